@@ -1,0 +1,106 @@
+"""The one place that knows how control kernels are compiled.
+
+A kernel is written in the part of Python that Numba compiles: scalars, ``float64`` arrays and
+records in, a status code out, nothing allocated. ``SAFETY_ISLAND_JIT=0`` runs the same source as
+plain Python. ``_nrt=False`` takes Numba's memory manager away, so a kernel that allocates an array
+does not compile; that private option is one reason for the exact version pin.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+JIT = os.environ.get("SAFETY_ISLAND_JIT", "1") != "0"
+"""False when the kernels run as plain Python."""
+
+FLAGS: dict[str, Any] = {"error_model": "numpy", "fastmath": False, "_nrt": False}
+
+ENTRIES: list[Entry] = []
+"""Every kernel that is called from outside, in the order of definition."""
+
+
+def cache_folder() -> Path:
+    """Where compiled kernels are kept, keyed by a hash of every kernel source and of Numba.
+
+    Numba itself would not notice an edit in a function that was imported from another file.
+    """
+    import numba
+
+    digest = hashlib.sha256(f"{numba.__version__} {np.__version__}".encode())
+    for source in sorted(Path(__file__).parent.glob("*.py")):
+        digest.update(source.read_bytes())
+    root = os.environ.get("SAFETY_ISLAND_CACHE") or os.path.join(
+        os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache"), "safety-island"
+    )
+    return Path(root) / f"kernels-{digest.hexdigest()[:16]}"
+
+
+def _njit(**options: Any) -> Callable[[Any], Any]:
+    import numba
+
+    numba.config.CACHE_DIR = str(cache_folder())
+    decorator: Callable[[Any], Any] = numba.njit(**FLAGS, **options)
+    return decorator
+
+
+def kernel(function: Any) -> Any:
+    """Mark a function that other kernels call; compiled as a part of them."""
+    return _njit()(function) if JIT else function
+
+
+class Entry:
+    """A kernel that the outside calls: its argument types are fixed when it is defined.
+
+    Each argument is a record type (passed as an array of it), or ``float`` or ``int``. Compiling
+    ahead and then forbidding more keeps a stray read-only array or an ``int`` given for a ``float``
+    from starting a compilation of seconds in the middle of a run: it is a ``TypeError`` instead.
+    """
+
+    def __init__(self, function: Callable[..., int], arguments: tuple[Any, ...]) -> None:
+        self.name = function.__name__
+        self.python = function
+        self.arguments = arguments
+        self.call: Callable[..., int] = function
+        self._dispatcher = _njit(cache=True)(function) if JIT else None
+        ENTRIES.append(self)
+
+    def signature(self) -> tuple[Any, ...]:
+        """The Numba types of the arguments."""
+        import numba
+
+        scalars = {float: numba.float64, int: numba.int64}
+        return tuple(
+            scalars[a] if a in scalars else numba.types.Array(numba.from_dtype(a), 1, "C")
+            for a in self.arguments
+        )
+
+    def prepare(self) -> None:
+        """Compile, or load the compiled code from disk; then refuse any other argument type."""
+        if self._dispatcher is not None and self.call is self.python:
+            self._dispatcher.compile(self.signature())
+            self._dispatcher.disable_compile()
+            self.call = self._dispatcher
+
+
+def entry(*arguments: Any) -> Callable[[Callable[..., int]], Entry]:
+    """Mark a kernel that the outside calls, with the type of each argument."""
+    return lambda function: Entry(function, arguments)
+
+
+def is_cached() -> bool:
+    """Whether compiled code for these sources is on disk (so that a start takes no compilation)."""
+    return not JIT or any(cache_folder().rglob("*.nbi"))
+
+
+def prepare(report: Callable[[str, int, int], None] | None = None) -> None:
+    """Make every entry ready to run; ``report(name, index, count)`` is told before each one."""
+    for index, item in enumerate(ENTRIES):
+        if report is not None:
+            report(item.name, index, len(ENTRIES))
+        item.prepare()

@@ -1,0 +1,66 @@
+"""Search and interpolation on a trajectory of ``POINT`` records."""
+
+import math
+
+from safety_island.control.geometry import normalize_angle, yaw_of
+from safety_island.control.kernel import kernel
+
+
+@kernel
+def _nearest_within(points, n, x, y, yaw, dist_limit, yaw_limit):
+    """Nearest point of the first run of points within both limits; -1 when there is none."""
+    best = -1
+    best_squared = math.inf
+    for i in range(n):
+        point = points[i]
+        dx = point.x - x
+        dy = point.y - y
+        squared = dx * dx + dy * dy
+        inside = squared <= dist_limit * dist_limit
+        if inside and yaw_limit < math.inf:
+            own = yaw_of(point.qx, point.qy, point.qz, point.qw)
+            inside = abs(normalize_angle(own - yaw)) <= yaw_limit
+        if inside:
+            if squared < best_squared:
+                best_squared = squared
+                best = i
+        elif best >= 0:
+            break
+    return best
+
+
+@kernel
+def nearest_index(points, n, x, y, yaw, dist_limit, yaw_limit):
+    """Nearest point with soft limits: both, else the distance alone, else the global nearest.
+
+    ``x``, ``y`` [m], ``yaw`` [rad]; limits [m], [rad]. Autoware: findFirstNearestIndexWithSoftConstraints.
+    """
+    best = _nearest_within(points, n, x, y, yaw, dist_limit, yaw_limit)
+    if best < 0:
+        best = _nearest_within(points, n, x, y, yaw, dist_limit, math.inf)
+    if best < 0:
+        best = _nearest_within(points, n, x, y, yaw, math.inf, math.inf)
+    return best
+
+
+@kernel
+def offset_along(points, segment, x, y):
+    """Signed 2-D offset [m] of (x, y) along segment (segment, segment + 1); 0 when it has no length."""
+    a = points[segment]
+    b = points[segment + 1]
+    dx = b.x - a.x
+    dy = b.y - a.y
+    length = math.sqrt(dx * dx + dy * dy)
+    if length == 0.0:
+        return 0.0
+    return (dx * (x - a.x) + dy * (y - a.y)) / length
+
+
+@kernel
+def segment_of(points, n, nearest, x, y):
+    """Segment that holds the projection of (x, y), given the nearest point."""
+    if nearest <= 0:
+        return 0
+    if nearest >= n - 1:
+        return n - 2
+    return nearest - 1 if offset_along(points, nearest, x, y) <= 0.0 else nearest

@@ -1,0 +1,76 @@
+"""Names of every state and reason that the kernels return as a number."""
+
+from enum import IntEnum
+
+
+class Mode(IntEnum):
+    """``OperationModeState.mode``."""
+
+    UNKNOWN = 0
+    STOP = 1
+    AUTONOMOUS = 2
+    LOCAL = 3
+    REMOTE = 4
+
+
+class LongitudinalState(IntEnum):
+    """States of the longitudinal controller, with the firmware's numbers."""
+
+    DRIVE = 0
+    STOPPING = 1
+    STOPPED = 2
+    EMERGENCY = 3
+
+
+class SlopeSource(IntEnum):
+    """Where the slope compensation takes the pitch from."""
+
+    RAW_PITCH = 0
+    TRAJECTORY_PITCH = 1
+    TRAJECTORY_ADAPTIVE = 2
+
+
+class VehicleModel(IntEnum):
+    """Prediction models of the MPC."""
+
+    KINEMATICS = 0
+    KINEMATICS_NO_DELAY = 1
+    DYNAMICS = 2
+
+
+class Solver(IntEnum):
+    """Quadratic-programme solvers of the MPC."""
+
+    UNCONSTRAINT_FAST = 0
+    OSQP = 1
+    DAQP = 2
+
+
+class Refusal(IntEnum):
+    """Why an input was refused before it could touch the controller."""
+
+    ACCEPTED = 0
+    NOT_FINITE = 1
+    TOO_FEW_POINTS = 2
+    TOO_MANY_POINTS = 3
+    COINCIDENT_POINTS = 4
+    BAD_QUATERNION = 5
+    TOO_LONG = 6
+
+
+class MpcStatus(IntEnum):
+    """Why the MPC did or did not give a command."""
+
+    SOLVED = 0
+    NO_REFERENCE = 1
+    TOO_FAR = 2
+    YAW_ERROR_TOO_LARGE = 3
+    TRAJECTORY_TOO_SHORT = 4
+    INVALID_MATRIX = 5
+    NOT_POSITIVE_DEFINITE = 6
+    INFEASIBLE = 7
+    ITERATION_LIMIT = 8
+    SOLUTION_NOT_FINITE = 9
+    SOLUTION_VIOLATES = 10
+    SOLUTION_NOT_OPTIMAL = 11
+    SOLVER_ERROR = 12
