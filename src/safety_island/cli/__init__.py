@@ -1,0 +1,1 @@
+"""The command ``island``: one small file for each of its commands."""

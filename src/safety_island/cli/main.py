@@ -1,0 +1,90 @@
+"""The entry point of ``island``: find the command, run it, turn every error into one line."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from collections.abc import Sequence
+
+from safety_island import __version__
+from safety_island.cli.parser import Parser, UsageError, nearest
+from safety_island.cli.table import COMMANDS, Command, find, load
+from safety_island.errors import IslandError
+
+DEBUG = "SAFETY_ISLAND_DEBUG"
+"""Environment variable that lets an unforeseen exception show where it comes from."""
+
+PURPOSE = """\
+Autoware's trajectory follower as a safety island: it reads five ROS 2 topics on a DDS domain of
+its own and answers with one control command every period."""
+
+
+def overview() -> str:
+    """Return the help of ``island`` itself."""
+    width = max(len(command.name) for command in COMMANDS)
+    rows = [f"  {command.name:<{width}}  {command.summary}" for command in COMMANDS]
+    return "\n".join(
+        [
+            "usage: island COMMAND [ARGUMENTS]",
+            "",
+            PURPOSE,
+            "",
+            "commands:",
+            *rows,
+            "",
+            "'island COMMAND --help' explains a command and shows examples.",
+            "'island --version' prints the version. Start with: island demo",
+        ]
+    )
+
+
+def choose(name: str) -> Command:
+    """Return the command of that name; an unknown one is answered with the nearest."""
+    command = find(name)
+    if command is None:
+        kind = "option" if name.startswith("-") else "command"
+        hint = nearest(name, [command.name for command in COMMANDS])
+        raise UsageError(f"unknown {kind} '{name}'{hint} (see 'island --help')")
+    return command
+
+
+def dispatch(arguments: list[str]) -> int:
+    """Run the command that the arguments name; return its exit code."""
+    if not arguments or arguments[0] in ("-h", "--help", "help"):
+        print(overview())
+        return 0
+    if arguments[0] in ("-V", "--version"):
+        print(f"island {__version__}")
+        return 0
+    command = choose(arguments[0])
+    module = load(command)
+    parser = Parser(prog=f"island {command.name}")
+    module.configure(parser)
+    return module.execute(parser.parse(arguments[1:]))
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run ``island``; return the exit code (a user's error is one line on standard error)."""
+    try:
+        code = dispatch(list(sys.argv[1:] if argv is None else argv))
+        sys.stdout.flush()
+        return code
+    except IslandError as error:
+        return _complain(str(error), error.exit_code)
+    except KeyboardInterrupt:
+        return 128 + signal.SIGINT
+    except BrokenPipeError:
+        # Nobody reads on; keep the interpreter from trying again at its end.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 128 + signal.SIGPIPE
+    except Exception as error:
+        if os.environ.get(DEBUG):
+            raise
+        fault = f"{type(error).__name__}: {error}"
+        return _complain(f"a fault of the island itself: {fault} ({DEBUG}=1 shows where)", 70)
+
+
+def _complain(message: str, code: int) -> int:
+    print(f"island: error: {message}", file=sys.stderr)
+    return code

@@ -1,0 +1,99 @@
+"""Options that several commands share, so that each is spelt, checked and explained once."""
+
+from __future__ import annotations
+
+import argparse
+from math import isfinite
+
+MAX_DOMAIN = 232
+"""The highest DDS domain id whose UDP ports exist."""
+
+
+def domain_id(text: str) -> int:
+    """Read a DDS domain id, 0 to 232."""
+    if not text.isascii() or not text.isdigit() or int(text) > MAX_DOMAIN:
+        raise argparse.ArgumentTypeError(
+            f"'{text}' is not a DDS domain id: a whole number from 0 to {MAX_DOMAIN}"
+        )
+    return int(text)
+
+
+def period_s(text: str) -> float:
+    """Read a control period in seconds, 1 ms to 1 s."""
+    return _seconds(text, 0.001, 1.0, "a period in seconds, for example 0.15")
+
+
+def duration_s(text: str) -> float:
+    """Read a duration in seconds; 0 means without end."""
+    return _seconds(text, 0.0, 1e9, "a duration in seconds, 0 for no end")
+
+
+def _seconds(text: str, low: float, high: float, meaning: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = float("nan")
+    if not isfinite(value) or not low <= value <= high:
+        raise argparse.ArgumentTypeError(f"'{text}' is not {meaning} ({low:g} to {high:g})")
+    return value
+
+
+def add_domain(parser: argparse.ArgumentParser, default: int, whose: str) -> None:
+    """Add ``--domain``."""
+    parser.add_argument(
+        "--domain",
+        type=domain_id,
+        default=default,
+        metavar="ID",
+        help=f"DDS domain of {whose} (default: {default})",
+    )
+
+
+def add_interface(parser: argparse.ArgumentParser) -> None:
+    """Add ``--interface``."""
+    parser.add_argument(
+        "--interface",
+        default="lo",
+        metavar="NAME",
+        help="network interface, for example eth0 or tap0 (default: lo, this machine only; "
+        "CYCLONEDDS_URI, when set, configures DDS instead)",
+    )
+
+
+def add_params(parser: argparse.ArgumentParser) -> None:
+    """Add ``--params``."""
+    parser.add_argument(
+        "--params",
+        nargs="+",
+        default=["default"],
+        metavar="FILE",
+        help="a parameter set by name (default, firmware, autoware-0.40) and Autoware parameter "
+        "files that change it, later ones winning",
+    )
+
+
+def add_period(parser: argparse.ArgumentParser) -> None:
+    """Add ``--period``."""
+    parser.add_argument(
+        "--period",
+        type=period_s,
+        metavar="SECONDS",
+        help="control period; overrides ctrl_period of the parameters (0.15 in the default set)",
+    )
+
+
+def add_duration(parser: argparse.ArgumentParser, default: float) -> None:
+    """Add ``--duration``."""
+    shown = f"{default:g}" if default else "0, no end"
+    parser.add_argument(
+        "--duration",
+        type=duration_s,
+        default=default,
+        metavar="SECONDS",
+        help=f"stop after this time; 0 runs on (default: {shown})",
+    )
+
+
+def add_json(parser: argparse.ArgumentParser, what: str) -> None:
+    """Add ``--json``."""
+    parser.add_argument("--json", action="store_true", help=f"print {what} as JSON")

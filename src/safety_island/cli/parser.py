@@ -1,0 +1,51 @@
+"""An argument parser whose errors are one line and whose help teaches."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterable
+from difflib import get_close_matches
+from typing import Any, NoReturn
+
+from safety_island.errors import IslandError
+
+
+class UsageError(IslandError):
+    """The command line cannot be understood."""
+
+    exit_code = 2
+
+
+class Parser(argparse.ArgumentParser):
+    """Raises UsageError instead of printing its usage and leaving."""
+
+    def __init__(self, **options: Any) -> None:
+        options.setdefault("formatter_class", argparse.RawDescriptionHelpFormatter)
+        super().__init__(allow_abbrev=False, **options)
+
+    def error(self, message: str) -> NoReturn:
+        """Raise UsageError; argparse calls this."""
+        raise UsageError(f"{message} (see '{self.prog} --help')")
+
+    def parse(self, arguments: list[str]) -> argparse.Namespace:
+        """Parse all arguments; an unknown option is answered with the nearest known one."""
+        known, unknown = self.parse_known_args(arguments)
+        if unknown:
+            self.error(f"unknown argument '{unknown[0]}'{self._nearest(unknown[0])}")
+        return known
+
+    def _nearest(self, word: str) -> str:
+        return nearest(word.split("=")[0], self._option_string_actions)
+
+
+def nearest(word: str, choices: Iterable[str]) -> str:
+    """Return ``; did you mean 'x'?`` for the choice most like a word, or nothing."""
+    match = get_close_matches(word, list(choices), n=1, cutoff=0.5)
+    return f"; did you mean '{match[0]}'?" if match else ""
+
+
+def teach(parser: argparse.ArgumentParser, purpose: str, *examples: tuple[str, str]) -> None:
+    """Give a command's help its purpose and its examples, each with what it does."""
+    parser.description = purpose.strip()
+    lines = [f"  {command}\n      {meaning}" for command, meaning in examples]
+    parser.epilog = "examples:\n" + "\n".join(lines)
