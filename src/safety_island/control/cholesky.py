@@ -1,0 +1,145 @@
+"""Cholesky factor H = R'R (R upper triangular) and the triangular solves that use it.
+
+The inner loops run over slices of contiguous rows and start at zero: in that shape LLVM vectorises
+them without reordering a sum. Rows are taken in pairs, so that each earlier row is read once for
+two; an odd order is rounded up with a row of the identity.
+"""
+
+import math
+
+from safety_island.control.kernel import kernel
+from safety_island.control.status import MpcStatus
+
+NOT_POSITIVE_DEFINITE = int(MpcStatus.NOT_POSITIVE_DEFINITE)
+SOLVED = int(MpcStatus.SOLVED)
+
+LOG_MIN_DETERMINANT = math.log(1e-9)
+"""The firmware's limit on det H, below which it gives no solution."""
+
+
+@kernel
+def factorize(q, n):
+    """Factorize H (n x n) into ``qp_R`` and 1 / diag(R) in ``qp_inverse``.
+
+    Returns SOLVED, or NOT_POSITIVE_DEFINITE for a pivot that is not positive (or NaN) and for
+    det H < 1e-9, where the firmware's ``unconstraint_fast`` gives up too.
+    """
+    if n % 2 == 1:
+        _pad(q, n)
+    m = n + n % 2
+    log_determinant = 0.0
+    for half in range(m // 2):
+        _reduce_pair(q, 2 * half, m)
+        pivots = _scale_pair(q, 2 * half, m)
+        if not pivots > 0.0:
+            return NOT_POSITIVE_DEFINITE
+        log_determinant += math.log(pivots)
+    return SOLVED if log_determinant >= LOG_MIN_DETERMINANT else NOT_POSITIVE_DEFINITE
+
+
+@kernel
+def _pad(q, n):
+    """Write row and column n of the identity behind H."""
+    for i in range(n):
+        q.H[i, n] = 0.0
+        q.H[n, i] = 0.0
+    q.H[n, n] = 1.0
+
+
+@kernel
+def _reduce_pair(q, k, m):
+    """Copy rows k and k + 1 of H and subtract what the rows above contribute."""
+    width = m - k
+    first = q.qp_R[k][k:m]
+    second = q.qp_R[k + 1][k:m]
+    first_source = q.H[k][k:m]
+    second_source = q.H[k + 1][k:m]
+    for i in range(width):
+        first[i] = first_source[i]
+    for i in range(width):
+        second[i] = second_source[i]
+    for half in range(k // 2):
+        a = q.qp_R[2 * half][k:m]
+        b = q.qp_R[2 * half + 1][k:m]
+        a0 = a[0]
+        a1 = a[1]
+        b0 = b[0]
+        b1 = b[1]
+        for i in range(width):
+            first[i] -= a0 * a[i] + b0 * b[i]
+            second[i] -= a1 * a[i] + b1 * b[i]
+
+
+@kernel
+def _scale_pair(q, k, m):
+    """Finish rows k and k + 1; return the product of their pivots, 0 when one is not positive."""
+    first = q.qp_R[k][k:m]
+    second = q.qp_R[k + 1][k:m]
+    pivot = first[0]
+    if not pivot > 0.0:
+        return 0.0
+    inverse = 1.0 / math.sqrt(pivot)
+    coupling = first[1] * inverse
+    next_pivot = second[1] - coupling * coupling
+    if not next_pivot > 0.0:
+        return 0.0
+    next_inverse = 1.0 / math.sqrt(next_pivot)
+    for i in range(m - k):
+        value = first[i] * inverse
+        first[i] = value
+        second[i] = (second[i] - coupling * value) * next_inverse
+    q.qp_inverse[k] = inverse
+    q.qp_inverse[k + 1] = next_inverse
+    return pivot * next_pivot
+
+
+@kernel
+def solve_transposed(q, x, start, n):
+    """Solve R'y = x in place; ``x`` is zero before index ``start``."""
+    for k in range(start, n):
+        width = n - k
+        row = q.qp_R[k][k:n]
+        rest = x[k:n]
+        value = rest[0] * q.qp_inverse[k]
+        for i in range(width):
+            rest[i] -= value * row[i]
+        rest[0] = value
+
+
+@kernel
+def solve_upper(q, x, n):
+    """Solve R y = x in place."""
+    for back in range(n):
+        k = n - 1 - back
+        row = q.qp_R[k][k + 1 : n]
+        known = x[k + 1 : n]
+        x[k] = (x[k] - dot(row, known, back)) * q.qp_inverse[k]
+
+
+@kernel
+def dot(a, b, size):
+    """Scalar product of the first ``size`` entries, in four interleaved sums."""
+    s0 = 0.0
+    s1 = 0.0
+    s2 = 0.0
+    s3 = 0.0
+    for quad in range(size // 4):
+        i = 4 * quad
+        s0 += a[i] * b[i]
+        s1 += a[i + 1] * b[i + 1]
+        s2 += a[i + 2] * b[i + 2]
+        s3 += a[i + 3] * b[i + 3]
+    for i in range(size - size % 4, size):
+        s0 += a[i] * b[i]
+    return (s0 + s1) + (s2 + s3)
+
+
+@kernel
+def solve_unconstrained(q, n):
+    """Set u = -H^-1 f after ``factorize``; v = R^-T f stays in ``qp_v``."""
+    for i in range(n):
+        q.qp_v[i] = q.f[i]
+    solve_transposed(q, q.qp_v, 0, n)
+    for i in range(n):
+        q.u[i] = -q.qp_v[i]
+    solve_upper(q, q.u, n)
