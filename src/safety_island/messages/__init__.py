@@ -1,0 +1,1 @@
+"""Messages of the safety island: IDL files, type registry, and the codecs from bytes and back."""

@@ -1,0 +1,102 @@
+"""The messages that the island sends: the control command and a number for debugging."""
+
+from __future__ import annotations
+
+from struct import Struct
+from typing import NamedTuple
+
+from safety_island.messages import wire
+from safety_island.messages.inputs import little_endian
+from safety_island.messages.wire import HEADER_LE, Time
+
+CONTROL = "autoware_control_msgs/msg/Control"
+FLOAT64_STAMPED = "tier4_debug_msgs/msg/Float64Stamped"
+
+_CONTROL = Struct("<4s iIiI iIiI ff B3x iIiI fff BB")
+_FLOAT64 = Struct("<4siId")
+
+
+class Control(NamedTuple):
+    """One command; the lateral part carries the stamp of the whole, as the firmware has it."""
+
+    stamp: Time
+    longitudinal_stamp: Time
+    steering_tire_angle: float
+    """[rad]"""
+    steering_tire_rotation_rate: float
+    """[rad/s]"""
+    velocity: float
+    """[m/s]"""
+    acceleration: float
+    """[m/s^2]"""
+    jerk: float = 0.0
+    """[m/s^3]"""
+    is_defined_steering_tire_rotation_rate: bool = False
+    is_defined_acceleration: bool = False
+    is_defined_jerk: bool = False
+    lateral_stamp: Time | None = None
+    """None: the stamp of the whole."""
+
+
+def encode_control(command: Control) -> bytes:
+    """Return an autoware_control_msgs/msg/Control; every control_time is zero.
+
+    Raises OverflowError for a finite value beyond float32 and struct.error for a stamp beyond its
+    integers; NaN and infinity are encoded.
+    """
+    return _CONTROL.pack(
+        HEADER_LE,
+        *command.stamp,
+        0,
+        0,
+        *(command.lateral_stamp or command.stamp),
+        0,
+        0,
+        command.steering_tire_angle,
+        command.steering_tire_rotation_rate,
+        command.is_defined_steering_tire_rotation_rate,
+        *command.longitudinal_stamp,
+        0,
+        0,
+        command.velocity,
+        command.acceleration,
+        command.jerk,
+        command.is_defined_acceleration,
+        command.is_defined_jerk,
+    )
+
+
+def decode_control(data: bytes) -> Control:
+    """Return the command of an autoware_control_msgs/msg/Control; DecodeError when it is none."""
+    data = little_endian(data, CONTROL)
+    wire.check_end(data, _CONTROL.size, CONTROL)
+    found = _CONTROL.unpack_from(data)
+    rate_defined, acceleration_defined, jerk_defined = (
+        wire.read_bool(found[i], CONTROL) for i in (11, 19, 20)
+    )
+    return Control(
+        stamp=Time(*found[1:3]),
+        longitudinal_stamp=Time(*found[12:14]),
+        steering_tire_angle=found[9],
+        steering_tire_rotation_rate=found[10],
+        velocity=found[16],
+        acceleration=found[17],
+        jerk=found[18],
+        is_defined_steering_tire_rotation_rate=rate_defined,
+        is_defined_acceleration=acceleration_defined,
+        is_defined_jerk=jerk_defined,
+        lateral_stamp=Time(*found[5:7]),
+    )
+
+
+def encode_float64_stamped(stamp: Time, value: float) -> bytes:
+    """Return a tier4_debug_msgs/msg/Float64Stamped."""
+    return _FLOAT64.pack(HEADER_LE, *stamp, value)
+
+
+def decode_float64_stamped(data: bytes) -> tuple[Time, float]:
+    """Return stamp and number of a tier4_debug_msgs/msg/Float64Stamped."""
+    data = little_endian(data, FLOAT64_STAMPED)
+    wire.check_end(data, _FLOAT64.size, FLOAT64_STAMPED)
+    _, sec, nanosec, value = _FLOAT64.unpack_from(data)
+    return Time(sec, nanosec), value

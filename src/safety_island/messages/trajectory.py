@@ -1,0 +1,113 @@
+"""The trajectory: a zero-copy view of the bytes, a copy in one stroke, and the encoder."""
+
+from __future__ import annotations
+
+from struct import Struct, error
+from typing import NamedTuple
+
+import numpy as np
+
+from safety_island.messages import wire
+from safety_island.messages.errors import DecodeError, DecodeReason
+from safety_island.messages.inputs import decode_stamp, little_endian, string_prefix
+from safety_island.messages.points import POINT, POINT_HEAD, TIME_SIZE, Points
+from safety_island.messages.wire import HEADER_LE, Time
+
+TRAJECTORY = "autoware_planning_msgs/msg/Trajectory"
+_U32 = Struct("<I")
+_TIME = Struct("<iI")
+
+
+class Trajectory(NamedTuple):
+    """A planned path in ``frame_id``; ``points`` are POINT (or POINT_HEAD) records."""
+
+    stamp: Time
+    frame_id: str
+    points: Points
+    first_time: Time
+    """time_from_start of the first point; each record holds the one of the point after it."""
+
+
+class _Layout(NamedTuple):
+    stamp: Time
+    frame_id: str
+    size: int
+    first_time: Time
+    start: int
+    """Place of the first ``position.x``; meaningless without points."""
+
+
+def decode_trajectory(data: bytes, out: Points | None = None) -> Trajectory:
+    """Return a trajectory whose points are POINT records in aligned memory of their own.
+
+    The points are copied in one stroke: into the first records of ``out`` (a C-contiguous POINT
+    array) when it is given, else into a new array. The last record's ``sec`` and ``nanosec`` are 0.
+    Raises DecodeError when the data are no trajectory or ``out`` is too small; ``out`` is then
+    untouched.
+    """
+    data = little_endian(data, TRAJECTORY)
+    found = _layout(data)
+    if out is None:
+        out = np.empty(found.size, POINT)
+    elif found.size > len(out):
+        detail = f"{found.size} points, at most {len(out)} are taken"
+        raise DecodeError(DecodeReason.LENGTH, TRAJECTORY, detail)
+    points = out[: found.size]
+    if found.size:
+        size = found.size * POINT.itemsize - TIME_SIZE
+        memory = points.view(np.uint8)
+        memory[:size] = np.frombuffer(data, np.uint8, size, found.start)
+        memory[size:] = 0
+    return Trajectory(found.stamp, found.frame_id, points, found.first_time)
+
+
+def view_trajectory(data: bytes) -> Trajectory:
+    """Return a trajectory whose points are a read-only view of ``data``: nothing is copied.
+
+    Records are POINT_HEAD, 88 bytes apart and not aligned: fit for NumPy, not for a kernel.
+    Raises DecodeError when the data are no trajectory.
+    """
+    data = little_endian(data, TRAJECTORY)
+    found = _layout(data)
+    points: Points = np.empty(0, POINT_HEAD)
+    if found.size:
+        strides = (POINT.itemsize,)
+        points = np.ndarray((found.size,), POINT_HEAD, data, found.start, strides)
+    points.flags.writeable = False
+    return Trajectory(found.stamp, found.frame_id, points, found.first_time)
+
+
+def encode_trajectory(
+    stamp: Time, frame_id: str, points: Points, first_time: Time | None = None
+) -> bytes:
+    """Return an autoware_planning_msgs/msg/Trajectory of POINT records.
+
+    ``first_time`` is the time_from_start of the first point (zero when not given).
+    """
+    prefix, end = string_prefix(frame_id)
+    count_at = wire.aligned(end, 4)
+    head = HEADER_LE + _TIME.pack(*stamp) + prefix + bytes(count_at - end)
+    head += _U32.pack(len(points))
+    if not len(points):
+        return head
+    head += _TIME.pack(*(first_time or Time()))
+    padding = bytes(wire.aligned(len(head), 8) - len(head))
+    body = np.ascontiguousarray(points, POINT).tobytes()
+    return head + padding + body[:-TIME_SIZE]
+
+
+def _layout(data: bytes) -> _Layout:
+    stamp = decode_stamp(data, TRAJECTORY)
+    frame_id, end = wire.read_string(data, wire.HEADER_SIZE + 8, TRAJECTORY)
+    count_at = wire.aligned(end, 4)
+    try:
+        (count,) = _U32.unpack_from(data, count_at)
+        if count == 0:
+            wire.check_end(data, count_at + 4, TRAJECTORY)
+            return _Layout(stamp, frame_id, 0, Time(), 0)
+        first_time = Time(*_TIME.unpack_from(data, count_at + 4))
+    except error:
+        raise wire.truncated(TRAJECTORY, count_at + 12, len(data)) from None
+    start = wire.aligned(count_at + 12, 8)
+    wire.check_end(data, start + count * POINT.itemsize - TIME_SIZE, TRAJECTORY)
+    return _Layout(stamp, frame_id, count, first_time, start)
