@@ -1,0 +1,97 @@
+"""The machine's network interfaces, as the Linux kernel tells them."""
+
+from __future__ import annotations
+
+import fcntl
+import select
+import socket
+import struct
+from collections.abc import Callable
+from contextlib import closing
+from functools import partial
+
+from safety_island.platform.interfaces import Clock, NetworkError
+
+SIOCGIFFLAGS = 0x8913
+SIOCGIFADDR = 0x8915
+IFF_UP = 1
+RTMGRP_LINK = 1
+RTMGRP_IPV4_IFADDR = 0x10
+LOOK_AGAIN_S = 0.2
+"""How often to look even when the kernel announced nothing."""
+
+
+def _never() -> bool:
+    return False
+
+
+def _ask(request: int, interface: str) -> bytes | None:
+    """Answer of an interface ``ioctl`` after the name field; None when there is none."""
+    query = struct.pack("16s24x", interface.encode()[:15])
+    try:
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as channel:
+            return fcntl.ioctl(channel.fileno(), request, query)[16:]
+    except OSError:
+        return None
+
+
+def _announcements() -> socket.socket:
+    """Return a socket that becomes readable when an address or a link changes."""
+    channel = socket.socket(socket.AF_NETLINK, socket.SOCK_RAW, socket.NETLINK_ROUTE)
+    channel.bind((0, RTMGRP_LINK | RTMGRP_IPV4_IFADDR))
+    channel.setblocking(False)
+    return channel
+
+
+class PosixNetwork:
+    """Interfaces by name; changes are heard over netlink, not polled for."""
+
+    def __init__(self, clock: Clock) -> None:
+        self._clock = clock
+
+    def address(self, interface: str) -> str | None:
+        """IPv4 address of the interface; None when it has none or does not exist."""
+        answer = _ask(SIOCGIFADDR, interface)
+        return socket.inet_ntoa(answer[4:8]) if answer is not None else None
+
+    def describe(self, interface: str) -> str:
+        """What the kernel says of the interface."""
+        names = [name for _, name in socket.if_nameindex()]
+        if interface not in names:
+            return f"there is no such interface; this machine has {', '.join(sorted(names))}"
+        address = self.address(interface)
+        if address is not None:
+            return f"it has the IPv4 address {address}"
+        flags = _ask(SIOCGIFFLAGS, interface)
+        is_up = flags is not None and bool(struct.unpack_from("=H", flags)[0] & IFF_UP)
+        return "it is up and has no IPv4 address" if is_up else "it is down"
+
+    def wait_for_address(
+        self, interface: str, limit_s: float, stopped: Callable[[], bool] = _never
+    ) -> str | None:
+        """IPv4 address of the interface, as soon as it has one; None when ``stopped()``."""
+        end_ns = self._clock.monotonic_ns() + round(limit_s * 1e9)
+        with closing(_announcements()) as channel:
+            while not stopped():
+                address = self.address(interface)
+                if address is not None:
+                    return address
+                left_s = (end_ns - self._clock.monotonic_ns()) * 1e-9
+                if left_s <= 0:
+                    raise NetworkError(
+                        f"interface '{interface}' has no IPv4 address after {limit_s:g} s "
+                        f"({self.describe(interface)}): connect it, give it an address, or name "
+                        "another interface"
+                    )
+                self._listen(channel, min(left_s, LOOK_AGAIN_S))
+        return None
+
+    @staticmethod
+    def _listen(channel: socket.socket, timeout_s: float) -> None:
+        """Wait for an announcement and forget its text: the question is asked anew."""
+        if select.select((channel,), (), (), timeout_s)[0]:
+            try:
+                for _ in iter(partial(channel.recv, 65536), b""):
+                    pass
+            except OSError:
+                return  # nothing more to read, or the kernel dropped some: ask all the same

@@ -1,0 +1,37 @@
+"""SIGINT and SIGTERM reach the callback and end a timer's wait."""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+
+import pytest
+
+from safety_island.platform import load
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_ends_the_wait_of_a_timer(number: signal.Signals) -> None:
+    platform = load("posix")
+    timer = platform.new_timer(3600.0)
+    before = signal.getsignal(number)
+    with platform.on_stop(timer.wake):
+        threading.Timer(0.02, os.kill, (os.getpid(), number)).start()
+        assert timer.wait() is None
+    assert signal.getsignal(number) is before
+    timer.close()
+
+
+def test_outside_the_main_thread_nothing_is_installed() -> None:
+    before = signal.getsignal(signal.SIGTERM)
+    inside: list[object] = []
+
+    def elsewhere() -> None:
+        with load("posix").on_stop(lambda: None):
+            inside.append(signal.getsignal(signal.SIGTERM))
+
+    thread = threading.Thread(target=elsewhere)
+    thread.start()
+    thread.join()
+    assert inside == [before]
