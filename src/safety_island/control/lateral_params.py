@@ -182,6 +182,9 @@ class LateralParams:
     vehicle_cr: float = parameter(
         "N/rad", "Cornering stiffness of the rear axle (dynamics).", 0.0, 1e7, key="vehicle.cr"
     )
+    symmetric_steer_rate_limits: bool = switch(
+        "Look steering-rate limits up by the absolute curvature and speed, not the signed ones."
+    )
     pass_filters_above_nyquist: bool = switch(
         "Let a cutoff stand above the Nyquist frequency; that filter passes its input through."
     )

@@ -22,6 +22,23 @@ class LongitudinalState(IntEnum):
     EMERGENCY = 3
 
 
+class LongitudinalSkip(IntEnum):
+    """Why a longitudinal tick gave no command and left its state as it was."""
+
+    NO_TRAJECTORY = -1
+    NOT_USABLE = -2
+
+
+class SmoothStopMode(IntEnum):
+    """How hard the smooth stop brakes, with the firmware's numbers; NONE outside STOPPING."""
+
+    NONE = -1
+    STRONG = 0
+    WEAK = 1
+    WEAK_STOP = 2
+    STRONG_STOP = 3
+
+
 class SlopeSource(IntEnum):
     """Where the slope compensation takes the pitch from."""
 
@@ -56,6 +73,7 @@ class Refusal(IntEnum):
     COINCIDENT_POINTS = 4
     BAD_QUATERNION = 5
     TOO_LONG = 6
+    OUT_OF_RANGE = 7
 
 
 class MpcStatus(IntEnum):

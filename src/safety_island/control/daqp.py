@@ -1,0 +1,269 @@
+"""A dual active-set solver for the quadratic programme of the MPC.
+
+After D. Arnstroem, A. Bemporad and D. Axehill, "A dual active-set solver for embedded quadratic
+programming using recursive LDL' updates", IEEE Transactions on Automatic Control 67 (2022). With
+H = R'R and w = R (u - free) the problem is the shortest w with M w <= d, M = A R^-1. A row of A
+touches one or two neighbours of u, so a row of M costs one short triangular solve, made only for
+constraints that enter the working set. Multipliers are positive on an upper bound, negative on a
+lower one, free where both bounds are equal.
+"""
+
+import math
+
+from safety_island.control.cholesky import solve_transposed, solve_upper
+from safety_island.control.kernel import kernel
+from safety_island.control.limits import MAX_HORIZON
+from safety_island.control.qp_ldl import (
+    append_row,
+    back_substitute,
+    forward,
+    remove_row,
+    solve_targets,
+)
+from safety_island.control.status import MpcStatus
+
+SOLVED = int(MpcStatus.SOLVED)
+INFEASIBLE = int(MpcStatus.INFEASIBLE)
+ITERATION_LIMIT = int(MpcStatus.ITERATION_LIMIT)
+
+VIOLATION = 1e-11
+"""A bound counts as kept when it is exceeded by no more than this [rad]."""
+
+DEPENDENT = 1e-11
+"""A row is a combination of the working set when this part of its squared length is left."""
+
+ROUNDING = 1e-13
+"""A multiplier of the wrong sign counts as zero below this part of the greatest one."""
+
+
+@kernel
+def solve_dual(q, n, max_iterations):
+    """Find the constrained minimiser from ``qp_free`` and the factor of H.
+
+    Starts from the working set and multipliers that the last call left. Sets ``u`` and returns
+    SOLVED, INFEASIBLE or ITERATION_LIMIT.
+    """
+    k = _restore(q, n)
+    best = -1.0
+    stalled = False
+    status = ITERATION_LIMIT
+    while q.qp_iterations < max_iterations:
+        q.qp_iterations += 1
+        solve_targets(q, k)
+        blocking = _step_to_targets(q, k, stalled)
+        if blocking >= 0:
+            k = _remove(q, k, blocking)
+            continue
+        _primal(q, n, k)
+        value = _dual_value(q, k)
+        stalled = stalled or value <= best
+        best = max(best, value)
+        entering = _most_violated(q, n, stalled)
+        if entering == 0:
+            status = SOLVED
+            break
+        k = _enter(q, n, k, entering)
+        if k < 0:
+            k = 0
+            status = INFEASIBLE
+            break
+    q.qp_active_count = k if status == SOLVED else 0
+    return status
+
+
+@kernel
+def _restore(q, n):
+    """Rebuild the factor for the constraints of the last call; return how many there are."""
+    count = q.qp_active_count
+    for i in range(n):
+        q.qp_in_set[i] = 0
+        q.qp_in_set[MAX_HORIZON + i] = 0
+    for j in range(MAX_HORIZON + 1):
+        q.qp_slot[j] = j
+    k = 0
+    for j in range(count):
+        constraint = q.qp_active[j]
+        if constraint % MAX_HORIZON < n:
+            multiplier = q.qp_multiplier[j]
+            side = -1 if multiplier < 0.0 else 1
+            independent = _append(q, n, k, constraint, side)
+            if independent:
+                if q.qp_side[k] == 0 or side == q.qp_side[k]:
+                    q.qp_multiplier[k] = multiplier
+                q.qp_in_set[constraint] = 1
+                k += 1
+    return k
+
+
+@kernel
+def _append(q, n, k, constraint, side):
+    """Put a constraint behind the k of the working set; return whether it is independent."""
+    i = constraint % MAX_HORIZON
+    is_rate = constraint >= MAX_HORIZON
+    low = q.lbA[i] if is_rate else q.lb[i]
+    high = q.ubA[i] if is_rate else q.ub[i]
+    start = i - 1 if is_rate and i > 0 else i
+    row = q.qp_M[q.qp_slot[k]]
+    for c in range(n):
+        row[c] = 0.0
+    row[i] = 1.0
+    value = q.qp_free[i]
+    if start < i:
+        row[start] = -1.0
+        value -= q.qp_free[start]
+    solve_transposed(q, row, start, n)
+    length = append_row(q, n, k, start)
+    q.qp_active[k] = constraint
+    q.qp_side[k] = side if low < high else 0
+    q.qp_excess[k] = value - (high if side > 0 else low)
+    q.qp_multiplier[k] = 0.0
+    forward(q, k, k + 1)
+    return q.qp_D[k] > DEPENDENT * length
+
+
+@kernel
+def _step_to_targets(q, k, stalled):
+    """Move the multipliers to their targets, or as far as their signs allow.
+
+    Returns the position that stops the step, -1 for a whole step.
+    """
+    greatest = 0.0
+    for j in range(k):
+        greatest = max(greatest, abs(q.qp_target[j]))
+    fraction = 1.0
+    worst = 0.0
+    blocking = -1
+    for j in range(k):
+        target = q.qp_side[j] * q.qp_target[j]
+        if target < -ROUNDING * greatest:
+            now = max(q.qp_side[j] * q.qp_multiplier[j], 0.0)
+            part = now / (now - target)
+            if part < fraction or (part == fraction and target < worst and not stalled):
+                fraction = part
+                worst = target
+                blocking = j
+    for j in range(k):
+        q.qp_multiplier[j] += fraction * (q.qp_target[j] - q.qp_multiplier[j])
+    return blocking
+
+
+@kernel
+def _remove(q, k, j):
+    """Take position j out of the working set of k; return k - 1."""
+    slot = q.qp_slot[j]
+    q.qp_in_set[q.qp_active[j]] = 0
+    remove_row(q, k, j)
+    for t in range(j, k - 1):
+        q.qp_slot[t] = q.qp_slot[t + 1]
+        q.qp_active[t] = q.qp_active[t + 1]
+        q.qp_side[t] = q.qp_side[t + 1]
+        q.qp_excess[t] = q.qp_excess[t + 1]
+        q.qp_multiplier[t] = q.qp_multiplier[t + 1]
+    q.qp_slot[k - 1] = slot
+    forward(q, j, k - 1)
+    return k - 1
+
+
+@kernel
+def _primal(q, n, k):
+    """Set u = free + R^-1 w with w = -M' multipliers."""
+    w = q.u
+    for i in range(n):
+        w[i] = 0.0
+    for j in range(k):
+        row = q.qp_M[q.qp_slot[j]]
+        multiplier = q.qp_multiplier[j]
+        for i in range(n):
+            w[i] -= multiplier * row[i]
+    solve_upper(q, w, n)
+    for i in range(n):
+        w[i] += q.qp_free[i]
+
+
+@kernel
+def _dual_value(q, k):
+    """Twice the dual objective of the present working set; grows from one to the next."""
+    value = 0.0
+    for j in range(k):
+        value += q.qp_y[j] * q.qp_y[j] / q.qp_D[j]
+    return value
+
+
+@kernel
+def _most_violated(q, n, stalled):
+    """Constraint + 1 that is violated most, negative for its lower bound, 0 for none.
+
+    After a stall the first one is taken: with the least index on both ends no cycle is possible.
+    """
+    worst = VIOLATION
+    entering = 0
+    before = 0.0
+    for i in range(n):
+        value = q.u[i]
+        if q.qp_in_set[i] == 0:
+            if value - q.ub[i] > worst:
+                worst = value - q.ub[i]
+                entering = i + 1
+            if q.lb[i] - value > worst:
+                worst = q.lb[i] - value
+                entering = -(i + 1)
+        if q.qp_in_set[MAX_HORIZON + i] == 0:
+            change = value - before
+            if change - q.ubA[i] > worst:
+                worst = change - q.ubA[i]
+                entering = MAX_HORIZON + i + 1
+            if q.lbA[i] - change > worst:
+                worst = q.lbA[i] - change
+                entering = -(MAX_HORIZON + i + 1)
+        before = value
+        if stalled and entering != 0:
+            break
+    return entering
+
+
+@kernel
+def _enter(q, n, k, entering):
+    """Add a violated constraint; one that depends on the set pushes another out.
+
+    Returns the new size of the set, -1 when the bounds contradict each other.
+    """
+    side = 1 if entering > 0 else -1
+    constraint = abs(entering) - 1
+    independent = _append(q, n, k, constraint, side)
+    q.qp_in_set[constraint] = 1
+    if independent:
+        return k + 1
+    leaving = _step_along_null(q, k, side)
+    if leaving < 0:
+        return -1
+    return _remove(q, k + 1, leaving)
+
+
+@kernel
+def _step_along_null(q, k, side):
+    """Raise the multiplier of the dependent row k until another one reaches zero.
+
+    The multipliers move along the null vector of the Gram matrix: the dual objective grows without
+    bound unless a sign stops it. Returns the position that does, -1 for none.
+    """
+    null = q.qp_target
+    for j in range(k):
+        null[j] = 0.0
+    null[k] = float(side)
+    back_substitute(q, null, k + 1)
+    greatest = 0.0
+    for j in range(k):
+        greatest = max(greatest, abs(null[j]))
+    step = math.inf
+    leaving = -1
+    for j in range(k):
+        slope = q.qp_side[j] * null[j]
+        if slope < -ROUNDING * greatest:
+            length = max(q.qp_side[j] * q.qp_multiplier[j], 0.0) / -slope
+            if length < step:
+                step = length
+                leaving = j
+    if leaving >= 0:
+        for j in range(k + 1):
+            q.qp_multiplier[j] += step * null[j]
+    return leaving

@@ -1,0 +1,144 @@
+"""The path over the MPC's horizon: velocity filter, nearest pose, time stations.
+
+Times count from the first point of the ego's segment; nothing before it is ever read.
+"""
+
+import math
+
+from safety_island.control.geometry import clip
+from safety_island.control.kernel import kernel
+from safety_island.control.reference_shape import curvature_at
+
+_EPSILON = 2.220446049250313e-16
+_TAIL = 100.0  # seconds that the closing duplicate stands still
+
+
+@kernel
+def _filtered_speed(current, target, ds, tau, limit):
+    """Velocity filter over one step of ``ds`` [m]: first-order lag, acceleration-limited."""
+    dt = ds / max(abs(current), _EPSILON)
+    a = tau / max(tau + dt, _EPSILON)
+    step = a * current + (1.0 - a) * target - current
+    return current + max(-limit * dt, min(limit * dt, step))
+
+
+@kernel
+def start_window(lat, segment):
+    """Begin the window at ``segment``."""
+    lat.segment = segment
+    lat.wt[0] = 0.0
+    lat.window = 1
+
+
+@kernel
+def extend_window(params, lat, speed):
+    """Add the next point of the velocity-filtered path; returns its 2-D step [m]."""
+    w = lat.window
+    i = lat.segment + w
+    last = lat.ref_n + 1  # the second closing duplicate
+    if i == last:
+        lat.wv[w] = 0.0
+        lat.wt[w] = lat.wt[w - 1] + _TAIL
+        lat.window = w + 1
+        return 0.0
+    dx = lat.rx[i] - lat.rx[i - 1]
+    dy = lat.ry[i] - lat.ry[i - 1]
+    ds_squared = dx * dx + dy * dy
+    ds = math.sqrt(ds_squared)
+    dz = lat.rz[i] - lat.rz[i - 1]
+    if w == 1:
+        lat.wv[0] = speed
+        lat.wv[1] = speed
+    else:
+        lat.wv[w] = _filtered_speed(
+            lat.wv[w - 1],
+            lat.rv[i],
+            ds,
+            params.mpc_velocity_time_constant,
+            params.mpc_acceleration_limit,
+        )
+    dt = math.sqrt(ds_squared + dz * dz) / max(abs(lat.wv[w - 1]), 0.1)
+    lat.wt[w] = lat.wt[w - 1] + max(dt, 1e-4)
+    lat.window = w + 1
+    return ds
+
+
+@kernel
+def fill_window(params, lat, speed, ratio, delay, horizon):
+    """Filter speed and time as far as the horizon needs; set nearest_time and prediction_dt.
+
+    ``ratio`` is the ego's place in the segment (or -1: it stands at the nearest point). The horizon
+    spans at least min_prediction_length [m] and (N - 1) prediction_dt [s].
+    """
+    start_window(lat, lat.segment)
+    end = lat.ref_n + 2 - lat.segment
+    nearest = lat.nearest - lat.segment
+    total = 0.0
+    t_end = math.inf
+    while lat.window < end:
+        w = lat.window
+        ds = extend_window(params, lat, speed)
+        if w == 1:
+            lat.nearest_time = lat.wt[nearest] if ratio < 0.0 else ratio * lat.wt[1]
+        if t_end == math.inf and w > nearest:
+            total += ds
+            if total > params.mpc_min_prediction_length:
+                part = (params.mpc_min_prediction_length - (total - ds)) / ds
+                target = lat.wt[w - 1] + (lat.wt[w] - lat.wt[w - 1]) * part
+                t_end = _set_horizon(params, lat, target, delay, horizon)
+        if lat.wt[w] >= t_end:
+            return
+    if t_end == math.inf:
+        _set_horizon(params, lat, lat.wt[end - 1] - _TAIL, delay, horizon)
+
+
+@kernel
+def _set_horizon(params, lat, target_time, delay, horizon):
+    """Set prediction_dt so that the horizon reaches ``target_time``; returns the horizon's end."""
+    start = lat.nearest_time + delay
+    lat.prediction_dt = max((target_time - start) / (horizon - 1), params.mpc_prediction_dt)
+    # one step more than the last station, and what the delay compensation reads lies before it
+    return start + horizon * lat.prediction_dt
+
+
+@kernel
+def step_at(lat, w, t):
+    """Index of the window's step that holds time ``t``, searched upward from ``w``."""
+    while w < lat.window - 2 and t > lat.wt[w + 1]:
+        w += 1
+    return w
+
+
+@kernel
+def part_of_step(lat, w, t):
+    """Place of ``t`` in step w, in [0, 1]."""
+    return clip((t - lat.wt[w]) / (lat.wt[w + 1] - lat.wt[w]), 0.0, 1.0)
+
+
+@kernel
+def between(a, b, part):
+    """Linear interpolation."""
+    return a + (b - a) * part
+
+
+@kernel
+def curvature_between(lat, w, part, reach):
+    """Curvature [1/m] at a place in step w of the window."""
+    i = lat.segment + w
+    return between(curvature_at(lat, i, reach), curvature_at(lat, i + 1, reach), part)
+
+
+@kernel
+def sample_horizon(params, lat, start, horizon):
+    """Fill speed and both curvatures at ``start + i prediction_dt``."""
+    traj = params.curvature_smoothing_num_traj
+    steer = params.curvature_smoothing_num_ref_steer
+    w = 0
+    for i in range(horizon):
+        t = start + i * lat.prediction_dt
+        w = step_at(lat, w, t)
+        part = part_of_step(lat, w, t)
+        lat.hv[i] = between(lat.wv[w], lat.wv[w + 1], part)
+        lat.hk[i] = curvature_between(lat, w, part, traj)
+        same = steer == traj
+        lat.hks[i] = lat.hk[i] if same else curvature_between(lat, w, part, steer)

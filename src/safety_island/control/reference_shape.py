@@ -1,0 +1,105 @@
+"""Yaw, curvature and the ego's place on the reference path, computed where they are asked for."""
+
+import math
+
+from safety_island.control.geometry import normalize_angle
+from safety_island.control.kernel import kernel
+
+
+@kernel
+def yaw_at(lat, i):
+    """Yaw [rad] of reference point ``i`` by central differences, not unwrapped; ends copied."""
+    n = lat.ref_n
+    if n < 3:
+        return lat.short_yaw[min(i, n - 1)]
+    i = min(max(i, 1), n - 2)
+    yaw = math.atan2(lat.ry[i + 1] - lat.ry[i - 1], lat.rx[i + 1] - lat.rx[i - 1])
+    return yaw if lat.is_forward else yaw + math.pi
+
+
+@kernel
+def curvature_at(lat, i, reach):
+    """Menger curvature [1/m] of points i-L, i, i+L, positive to the left; ends copied."""
+    n = lat.ref_n
+    span = min(reach, (n - 1) // 2)
+    i = min(max(i, span), n - 1 - span)
+    x1 = lat.rx[i - span]
+    y1 = lat.ry[i - span]
+    x2 = lat.rx[i]
+    y2 = lat.ry[i]
+    x3 = lat.rx[i + span]
+    y3 = lat.ry[i + span]
+    a = (x2 - x1) * (x2 - x1) + (y2 - y1) * (y2 - y1)
+    b = (x3 - x2) * (x3 - x2) + (y3 - y2) * (y3 - y2)
+    c = (x1 - x3) * (x1 - x3) + (y1 - y3) * (y1 - y3)
+    product = math.sqrt(a * b * c)
+    if product < 1e-10:
+        return 0.0
+    return 2.0 * ((x2 - x1) * (y3 - y1) - (y2 - y1) * (x3 - x1)) / product
+
+
+@kernel
+def _nearest_within(lat, x, y, yaw, dist_limit, yaw_limit):
+    best = -1
+    best_squared = math.inf
+    rx = lat.rx
+    ry = lat.ry
+    for i in range(lat.ref_n + 1):
+        dx = rx[i] - x
+        dy = ry[i] - y
+        squared = dx * dx + dy * dy
+        inside = squared <= dist_limit * dist_limit
+        if inside and yaw_limit < math.inf:
+            inside = abs(normalize_angle(yaw_at(lat, i) - yaw)) <= yaw_limit
+        if inside:
+            if squared < best_squared:
+                best_squared = squared
+                best = i
+        elif best >= 0:
+            break
+    return best
+
+
+@kernel
+def _nearest_global(lat, x, y):
+    best = 0
+    best_squared = math.inf
+    rx = lat.rx
+    ry = lat.ry
+    for i in range(lat.ref_n):
+        dx = rx[i] - x
+        dy = ry[i] - y
+        squared = dx * dx + dy * dy
+        if squared < best_squared:
+            best_squared = squared
+            best = i
+    return best
+
+
+@kernel
+def nearest_on_reference(lat, x, y, yaw, dist_limit, yaw_limit):
+    """Nearest reference point with the soft limits of ``points.nearest_index``."""
+    best = -1
+    if dist_limit > 0.0:
+        best = _nearest_within(lat, x, y, yaw, dist_limit, yaw_limit)
+        if best < 0:
+            best = _nearest_within(lat, x, y, yaw, dist_limit, math.inf)
+    if best < 0:
+        best = _nearest_global(lat, x, y)
+    return best
+
+
+@kernel
+def segment_on_reference(lat, nearest, x, y):
+    """Segment of the closed reference that holds the projection of (x, y).
+
+    On the closing segment, which has no length, the nearest point itself is taken.
+    """
+    if nearest <= 0:
+        return 0
+    dx = lat.rx[nearest + 1] - lat.rx[nearest]
+    dy = lat.ry[nearest + 1] - lat.ry[nearest]
+    if abs(dx) < 1e-8 and abs(dy) < 1e-8:
+        return nearest
+    along = dx * (x - lat.rx[nearest]) + dy * (y - lat.ry[nearest])
+    return nearest - 1 if along <= 0.0 else nearest

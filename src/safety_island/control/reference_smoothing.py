@@ -1,0 +1,30 @@
+"""Moving average over the reference path (optional)."""
+
+from safety_island.control.kernel import kernel
+
+
+@kernel
+def moving_average(values, work, n, reach):
+    """Replace each value by the mean over +-reach points, fewer near the ends.
+
+    Returns False, with the values untouched, when there are fewer values than ``reach``.
+    """
+    if n < reach:
+        return False
+    for i in range(n):
+        span = min(reach, i, n - 1 - i)
+        total = 0.0
+        for j in range(i - span, i + span + 1):
+            total += values[j]
+        work[i] = total / (2 * span + 1)
+    for i in range(n):
+        values[i] = work[i]
+    return True
+
+
+@kernel
+def smooth_reference(lat, n, reach):
+    """Smooth x, y and speed of the reference; yaw is computed from x and y later."""
+    moving_average(lat.rx, lat.smooth, n, reach)
+    moving_average(lat.ry, lat.smooth, n, reach)
+    moving_average(lat.rv, lat.smooth, n, reach)

@@ -1,0 +1,85 @@
+"""Natural cubic splines over the arc length of a trajectory, several curves sharing one elimination."""
+
+import math
+
+from safety_island.control.kernel import kernel
+
+
+@kernel
+def eliminate(arc, gain, n):
+    """Fill the elimination factors of the natural-spline system for knots ``arc[:n]``."""
+    gain[0] = 0.0
+    for i in range(1, n - 1):
+        before = arc[i] - arc[i - 1]
+        after = arc[i + 1] - arc[i]
+        gain[i] = after / (2.0 * (before + after) - before * gain[i - 1])
+
+
+@kernel
+def second_derivatives(arc, gain, values, second, n):
+    """Fill the second derivatives of one curve through ``values[:n]``; zero at both ends."""
+    second[0] = 0.0
+    for i in range(1, n - 1):
+        before = arc[i] - arc[i - 1]
+        after = arc[i + 1] - arc[i]
+        slope = (values[i + 1] - values[i]) / after - (values[i] - values[i - 1]) / before
+        # gain[i] / after is one over the pivot
+        second[i] = (6.0 * slope - before * second[i - 1]) * gain[i] / after
+    second[n - 1] = 0.0
+    for i in range(n - 2, 0, -1):
+        second[i] -= gain[i] * second[i + 1]
+
+
+@kernel
+def second_derivatives_3d(arc, gain, x, y, z, mx, my, mz, n):
+    """Fill the second derivatives of a space curve in one pass."""
+    mx[0] = my[0] = mz[0] = 0.0
+    last = n - 1
+    mx[last] = my[last] = mz[last] = 0.0
+    before = arc[1] - arc[0]
+    sx = (x[1] - x[0]) / before
+    sy = (y[1] - y[0]) / before
+    sz = (z[1] - z[0]) / before
+    for i in range(1, last):
+        after = arc[i + 1] - arc[i]
+        inverse = 1.0 / after
+        pivot = gain[i] * inverse
+        tx = (x[i + 1] - x[i]) * inverse
+        ty = (y[i + 1] - y[i]) * inverse
+        tz = (z[i + 1] - z[i]) * inverse
+        mx[i] = (6.0 * (tx - sx) - before * mx[i - 1]) * pivot
+        my[i] = (6.0 * (ty - sy) - before * my[i - 1]) * pivot
+        mz[i] = (6.0 * (tz - sz) - before * mz[i - 1]) * pivot
+        before = after
+        sx = tx
+        sy = ty
+        sz = tz
+    for i in range(last - 1, 0, -1):
+        mx[i] -= gain[i] * mx[i + 1]
+        my[i] -= gain[i] * my[i + 1]
+        mz[i] -= gain[i] * mz[i + 1]
+
+
+@kernel
+def spline_value(arc, values, second, j, s):
+    """Value at arc length ``s`` by the cubic of interval ``j``."""
+    h = arc[j + 1] - arc[j]
+    t = s - arc[j]
+    a = (second[j + 1] - second[j]) / (6.0 * h)
+    b = second[j] / 2.0
+    c = (values[j + 1] - values[j]) / h - h * (2.0 * second[j] + second[j + 1]) / 6.0
+    return ((a * t + b) * t + c) * t + values[j]
+
+
+@kernel
+def interval_from(arc, n, j, s):
+    """Interval that holds ``s``, searched upward from ``j``; the last one when ``s`` is beyond."""
+    while j < n - 2 and s > arc[j + 1]:
+        j += 1
+    return j
+
+
+@kernel
+def unwrap_step(angle, previous):
+    """The equal of ``angle`` [rad] that lies nearest to ``previous``."""
+    return angle - 2.0 * math.pi * math.floor((angle - previous) / (2.0 * math.pi) + 0.5)

@@ -1,0 +1,64 @@
+"""Prediction of the present tyre angle from the commands that were sent (control.md, section 9)."""
+
+import math
+
+from safety_island.control.kernel import kernel
+from safety_island.control.limits import MAX_HISTORY
+
+_TOLERANCE = 1e-9  # seconds; a stamp carries whole nanoseconds
+
+
+@kernel
+def _response_to_commands(lat, start, end, tau):
+    """What the commands in force between ``start`` and ``end`` add to the angle."""
+    n = lat.predictor_n
+    if n <= 2:
+        return 0.0
+    i = 1
+    while start > lat.predictor_t[i] + _TOLERANCE:
+        if i + 1 >= n:
+            return 0.0
+        i += 1
+    total = 0.0
+    t = start
+    while i < n and end > lat.predictor_t[i] + _TOLERANCE:
+        step = lat.predictor_t[i] - t
+        total += (1.0 - math.exp(-step / tau)) * lat.predictor_u[i - 1]
+        t = lat.predictor_t[i]
+        i += 1
+    return total + (1.0 - math.exp(-(end - t) / tau)) * lat.predictor_u[i - 1]
+
+
+@kernel
+def predict_steering(lat, now, tau):
+    """Advance the predicted tyre angle [rad] to ``now`` and return it."""
+    if not lat.predictor_started:
+        lat.predictor_started = True
+        lat.predictor_time = now
+    start = lat.predictor_time
+    lat.predictor_time = now
+    response = _response_to_commands(lat, start, now, tau)
+    lat.predicted = math.exp(-(now - start) / tau) * lat.predicted + response
+    return lat.predicted
+
+
+@kernel
+def store_command(lat, angle, now, delay):
+    """Remember a command [rad] that takes effect at ``now + delay``; drop at most one old one."""
+    n = lat.predictor_n
+    if n == MAX_HISTORY:
+        _drop_oldest(lat)
+        n -= 1
+    lat.predictor_u[n] = angle
+    lat.predictor_t[n] = now + delay
+    lat.predictor_n = n + 1
+    if lat.predictor_n > 2 and now + delay - lat.predictor_t[1] > delay + 0.3:
+        _drop_oldest(lat)
+
+
+@kernel
+def _drop_oldest(lat):
+    for i in range(1, lat.predictor_n):
+        lat.predictor_u[i - 1] = lat.predictor_u[i]
+        lat.predictor_t[i - 1] = lat.predictor_t[i]
+    lat.predictor_n -= 1
