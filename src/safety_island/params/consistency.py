@@ -1,0 +1,184 @@
+"""What must hold between parameters, beyond the range of each."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+from safety_island.control.limits import MAX_DELAY_STEPS, MAX_HISTORY, MAX_SHAPE_HISTORY
+
+Values = Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Rule:
+    """A condition on some keys: ``check`` returns what is wrong, or None.
+
+    The keys stand in the order in which they are named when a file gives several.
+    """
+
+    keys: tuple[str, ...]
+    check: Callable[[Values], str | None]
+
+
+ORDERED = (
+    ("min_out", "max_out"),
+    ("min_p_effort", "max_p_effort"),
+    ("min_i_effort", "max_i_effort"),
+    ("min_d_effort", "max_d_effort"),
+    ("smooth_stop_min_strong_acc", "smooth_stop_max_strong_acc"),
+    ("smooth_stop_strong_stop_dist", "smooth_stop_weak_stop_dist"),
+    ("min_acc", "max_acc"),
+    ("min_jerk", "max_jerk"),
+    ("min_pitch_rad", "max_pitch_rad"),
+    ("ctrl_period", "timeout_thr_sec"),
+)
+"""Pairs of which the first is at most the second."""
+
+TABLES = (
+    ("curvature_list_for_steer_rate_lim", "steer_rate_lim_dps_list_by_curvature"),
+    ("velocity_list_for_steer_rate_lim", "steer_rate_lim_dps_list_by_velocity"),
+)
+"""Abscissae and values of the tables."""
+
+FILTERS = ("steering_lpf_cutoff_hz", "error_deriv_lpf_cutoff_hz")
+
+SPANS = (
+    ("input_delay", MAX_DELAY_STEPS),
+    ("delay_compensation_time", MAX_HISTORY - 4),
+    ("new_traj_duration_time", MAX_SHAPE_HISTORY),
+)
+"""Times that are kept as that many control periods at most."""
+
+DYNAMICS = tuple(
+    f"vehicle.{name}" for name in ("mass_fl", "mass_fr", "mass_rl", "mass_rr", "cf", "cr")
+)
+
+
+def nyquist_hz(period: float) -> float:
+    """Return the highest frequency that samples at this period [s] can show."""
+    return 1.0 / (2.0 * period)
+
+
+def _ordered(low: str, high: str) -> Rule:
+    def check(values: Values) -> str | None:
+        if values[low] <= values[high]:
+            return None
+        return f"found {low} {values[low]:g} above {high} {values[high]:g}; expected at most that"
+
+    return Rule((low, high), check)
+
+
+def _same_length(at: str, table: str) -> Rule:
+    def check(values: Values) -> str | None:
+        if len(values[at]) == len(values[table]):
+            return None
+        sizes = f"{len(values[at])} entries in {at} and {len(values[table])} in {table}"
+        return f"found {sizes}; expected as many in both"
+
+    return Rule((at, table), check)
+
+
+def _ascending(at: str) -> Rule:
+    def check(values: Values) -> str | None:
+        numbers = values[at]
+        if all(a < b for a, b in pairwise(numbers)):
+            return None
+        return f"found {list(numbers)}; expected each entry above the one before it"
+
+    return Rule((at,), check)
+
+
+def above_nyquist(cutoff: str, values: Values) -> bool:
+    """Tell whether a filter that is in use has a cutoff that its samples cannot show.
+
+    The filter of the error rates is in use with the dynamics model only.
+    """
+    used = cutoff == "steering_lpf_cutoff_hz" or values["vehicle_model_type"] == "dynamics"
+    return bool(used and values[cutoff] >= nyquist_hz(values["ctrl_period"]))
+
+
+def _below_nyquist(cutoff: str) -> Rule:
+    def check(values: Values) -> str | None:
+        if values["pass_filters_above_nyquist"] or not above_nyquist(cutoff, values):
+            return None
+        limit = nyquist_hz(values["ctrl_period"])
+        return (
+            f"found {cutoff} {values[cutoff]:g} Hz at ctrl_period {values['ctrl_period']:g} s;"
+            f" expected below its Nyquist frequency of {limit:.4g} Hz, or"
+            " pass_filters_above_nyquist: true to run without this filter"
+        )
+
+    keys = (cutoff, "ctrl_period", "vehicle_model_type", "pass_filters_above_nyquist")
+    return Rule(keys, check)
+
+
+def _span(time: str, steps: int) -> Rule:
+    def check(values: Values) -> str | None:
+        period = values["ctrl_period"]
+        if values[time] < (steps + 0.5) * period:
+            return None
+        return (
+            f"found {time} {values[time]:g} s at ctrl_period {period:g} s;"
+            f" expected at most {steps} periods, {steps * period:g} s"
+        )
+
+    return Rule((time, "ctrl_period"), check)
+
+
+def _loaded(key: str) -> Rule:
+    def check(values: Values) -> str | None:
+        if values["vehicle_model_type"] != "dynamics" or values[key] > 0.0:
+            return None
+        return f"found {key} {values[key]:g}; expected above 0 for vehicle_model_type dynamics"
+
+    return Rule((key, "vehicle_model_type"), check)
+
+
+def _stop_distances(values: Values) -> str | None:
+    leave = values["drive_state_stop_dist"] + values["drive_state_offset_stop_dist"]
+    if values["stopping_state_stop_dist"] <= leave:
+        return None
+    return (
+        f"found stopping_state_stop_dist {values['stopping_state_stop_dist']:g} m; expected at most"
+        f" drive_state_stop_dist + drive_state_offset_stop_dist, {leave:g} m,"
+        " or STOPPING and DRIVE alternate"
+    )
+
+
+_STOP = ("stopping_state_stop_dist", "drive_state_stop_dist", "drive_state_offset_stop_dist")
+
+RULES: tuple[Rule, ...] = (
+    *(_ordered(low, high) for low, high in ORDERED),
+    *(_same_length(at, table) for at, table in TABLES),
+    *(_ascending(at) for at, _ in TABLES),
+    *(_below_nyquist(cutoff) for cutoff in FILTERS),
+    *(_span(time, steps) for time, steps in SPANS),
+    *(_loaded(key) for key in DYNAMICS),
+    Rule(_STOP, _stop_distances),
+)
+
+
+def inconsistencies(values: Values) -> Iterable[tuple[Rule, str]]:
+    """Yield each rule that the values break, with what is wrong.
+
+    A rule with a key that is missing from the values is left out: that key has its own error.
+    """
+    for rule in RULES:
+        if all(key in values for key in rule.keys):
+            text = rule.check(values)
+            if text is not None:
+                yield rule, text
+
+
+def notes(values: Values) -> list[str]:
+    """Return what a start should say once: filters that pass their input through."""
+    limit = nyquist_hz(values["ctrl_period"])
+    return [
+        f"{cutoff} {values[cutoff]:g} Hz is not below the Nyquist frequency of {limit:.4g} Hz:"
+        " this filter passes its input through"
+        for cutoff in FILTERS
+        if above_nyquist(cutoff, values)
+    ]

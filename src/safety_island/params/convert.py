@@ -1,0 +1,51 @@
+"""Whether a value is allowed for a parameter, and which key a misspelt one was meant to be."""
+
+from __future__ import annotations
+
+from difflib import SequenceMatcher, get_close_matches
+from typing import Any
+
+from safety_island.control.limits import MAX_RATE_TABLE
+from safety_island.params.scalars import found
+from safety_island.params.schema import KNOWN, Known
+
+
+class NotAllowedError(ValueError):
+    """A value that a parameter may not have; the text says what was found and what is allowed."""
+
+
+def convert(known: Known, value: Any) -> Any:
+    """Return the value with the type of the parameter, a whole number for a float as a float.
+
+    Raises NotAllowedError.
+    """
+    if known.kind == "list":
+        if isinstance(value, list | tuple) and 1 <= len(value) <= MAX_RATE_TABLE:
+            return tuple(_number(known, item) for item in value)
+    elif known.kind in ("float", "int"):
+        return _number(known, value)
+    elif known.kind == "bool":
+        if isinstance(value, bool):
+            return value
+    elif isinstance(value, str) and value in known.choices:
+        return value
+    raise _not_allowed(known, value)
+
+
+def _number(known: Known, value: Any) -> float | int:
+    """Return a number in range; NaN is in none, and true is no number."""
+    number = isinstance(value, int if known.kind == "int" else (int, float))
+    if number and not isinstance(value, bool) and known.low <= value <= known.high:
+        return int(value) if known.kind == "int" else float(value)
+    raise _not_allowed(known, value)
+
+
+def _not_allowed(known: Known, value: Any) -> NotAllowedError:
+    return NotAllowedError(f"found {found(value)}; expected {known.allowed_text}")
+
+
+def nearest(key: str, keys: tuple[str, ...] = tuple(KNOWN)) -> str:
+    """Return the key or keys most like a misspelt one, joined by 'or'; empty when none is."""
+    close = get_close_matches(key, keys, n=3, cutoff=0.5)
+    likeness = {name: SequenceMatcher(None, name, key).ratio() for name in close}
+    return " or ".join(name for name in close if likeness[name] == max(likeness.values()))

@@ -1,0 +1,158 @@
+"""Layers of values, one over the other, with where each value comes from."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from safety_island.params.consistency import Rule, inconsistencies
+from safety_island.params.convert import NotAllowedError, convert, nearest
+from safety_island.params.no_effect import NoEffect, no_effect
+from safety_island.params.problem import Place, Problem
+from safety_island.params.scalars import found, shown
+from safety_island.params.schema import KNOWN
+from safety_island.params.tree import Entry, Source, entries, value_of_text
+
+MAX_FILE_BYTES = 1 << 20
+"""A parameter file has a few kB; a file beyond this is not one."""
+
+
+@dataclass(frozen=True)
+class Ignored:
+    """A key that was accepted and has no effect, with the reason."""
+
+    place: Place
+    key: str
+    reason: str
+
+    def __str__(self) -> str:
+        return f"{self.place}: {self.key}: no effect: {self.reason}"
+
+
+@dataclass
+class Layers:
+    """Values by key as the layers so far give them; the latest of each key wins."""
+
+    values: dict[str, Any] = field(default_factory=dict)
+    origins: dict[str, Entry] = field(default_factory=dict)
+    depth: dict[str, int] = field(default_factory=dict)
+    refused: set[str] = field(default_factory=set)
+    ignored: list[Ignored] = field(default_factory=list)
+    problems: list[Problem] = field(default_factory=list)
+    count: int = 0
+
+    def add_file(self, path: Path) -> None:
+        """Lay a file of the user over what is there."""
+        try:
+            text = _text(path)
+        except (OSError, UnicodeDecodeError, ValueError) as error:
+            why = getattr(error, "strerror", None) or str(error)
+            text_ = f"cannot be read: {why}; expected a YAML file of parameters"
+            self.problems.append(Problem(Place(str(path)), "", text_))
+        else:
+            self.add_source(Source(str(path), text))
+
+    def add_source(self, source: Source) -> None:
+        """Lay the text of a file over what is there."""
+        self.add_entries(entries(source, self.problems))
+
+    def add_mapping(self, overrides: Mapping[str, object], name: str) -> None:
+        """Lay values by key over what is there; a text is read as a file would."""
+        place = Place(name)
+        self.add_entries(
+            Entry(key, self._plain(key, value, place), place, place)
+            for key, value in _flat(overrides)
+        )
+
+    def add_entries(self, given: Iterable[Entry]) -> None:
+        """Lay entries over what is there; each key may stand once in a layer."""
+        self.count += 1
+        lines: dict[str, Place] = {}
+        for entry in given:
+            if entry.key in lines:
+                text = f"found a second time, first at {lines[entry.key]}; expected once"
+                self.problems.append(Problem(entry.place, entry.key, text))
+            else:
+                lines[entry.key] = entry.place
+                self._add(entry)
+
+    def _plain(self, key: str, value: object, place: Place) -> object:
+        if not isinstance(value, str):
+            return value
+        try:
+            return value_of_text(value)
+        except yaml.YAMLError:
+            self.problems.append(Problem(place, key, f"found {found(value)}; expected a value"))
+            return value
+
+    def _add(self, entry: Entry) -> None:
+        known = KNOWN.get(entry.key)
+        if known is None:
+            self._add_unknown(entry, no_effect(entry.key))
+            return
+        self.origins[entry.key] = entry
+        self.depth[entry.key] = self.count
+        try:
+            self.values[entry.key] = convert(known, entry.value)
+            self.refused.discard(entry.key)
+        except NotAllowedError as error:
+            self.refused.add(entry.key)
+            self.problems.append(Problem(entry.place, entry.key, str(error)))
+
+    def _add_unknown(self, entry: Entry, reason: NoEffect | None) -> None:
+        if reason is None:
+            near = nearest(entry.key)
+            hint = f"; the nearest known key is {near}" if near else "; see docs/parameters.md"
+            self.problems.append(Problem(entry.place, entry.key, f"is not a known key{hint}"))
+        elif reason.only is not None and entry.value != reason.only:
+            text = f"found {found(entry.value)}; only {shown(reason.only)} is built in"
+            self.problems.append(Problem(entry.place, entry.key, text))
+        else:
+            self.ignored.append(Ignored(entry.place, entry.key, reason.reason))
+
+    def check(self) -> None:
+        """Look for missing keys and for values that do not fit together."""
+        for key in KNOWN:
+            if key not in self.origins:
+                self.problems.append(self._missing(key))
+        usable = {key: value for key, value in self.values.items() if key not in self.refused}
+        for rule, text in inconsistencies(usable):
+            key = self._culprit(rule)
+            self.problems.append(Problem(self.origins[key].place, key, text))
+
+    def _culprit(self, rule: Rule) -> str:
+        """Return the key of a broken rule that the topmost layer gave."""
+        return max(rule.keys, key=lambda key: self.depth[key])
+
+    def _missing(self, key: str) -> Problem:
+        """A missing key is told at the section that holds its nearest neighbour."""
+        order = [other for other in KNOWN if KNOWN[other].group == KNOWN[key].group]
+        at = order.index(key)
+        given = [other for other in order if other in self.origins]
+        text = f"is missing; expected {KNOWN[key].allowed_text}"
+        if not given:
+            return Problem(Place(f"no file with {KNOWN[key].group} parameters"), key, text)
+        neighbour = min(given, key=lambda other: abs(order.index(other) - at))
+        return Problem(self.origins[neighbour].section, key, text)
+
+
+def _text(path: Path) -> str:
+    if path.is_dir():
+        raise IsADirectoryError(None, "Is a directory")
+    with path.open("rb") as stream:
+        data = stream.read(MAX_FILE_BYTES + 1)
+    if len(data) > MAX_FILE_BYTES:
+        raise ValueError(f"has more than {MAX_FILE_BYTES} bytes")
+    return data.decode("utf-8")
+
+
+def _flat(overrides: Mapping[str, object], prefix: str = "") -> Iterator[tuple[str, object]]:
+    for key, value in overrides.items():
+        if isinstance(value, Mapping):
+            yield from _flat(value, f"{prefix}{key}.")
+        else:
+            yield f"{prefix}{key}", value

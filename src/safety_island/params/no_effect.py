@@ -1,0 +1,67 @@
+"""Keys of Autoware's real files that have no effect here, each with the reason.
+
+They are accepted, so that those files load unchanged, and reported (``Loaded.ignored``). A key that
+would have an effect in Autoware 0.40 and not here is not among them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+_DEBUG = "debug topics are not published; the trace of each tick holds these values"
+_UNREAD = "Autoware 0.40 does not read it either"
+_LOADS = "follows from the loads of the wheels and the wheelbase"
+_NESTED = "Autoware 0.40 does not read it here either, only below 'vehicle:'"
+
+
+@dataclass(frozen=True)
+class NoEffect:
+    """Why a key has no effect; ``only`` is the one value that it may have, None when any."""
+
+    reason: str
+    only: object = None
+
+
+NO_EFFECT: dict[str, NoEffect] = {
+    # lateral/mpc.param.yaml
+    "acceleration_limit": NoEffect(f"{_UNREAD}; mpc_acceleration_limit acts"),
+    "velocity_time_constant": NoEffect(f"{_UNREAD}; mpc_velocity_time_constant acts"),
+    "use_delayed_initial_state": NoEffect("concerns the predicted trajectory, a debug output"),
+    "publish_debug_trajectories": NoEffect(_DEBUG),
+    "debug_publish_predicted_trajectory": NoEffect(_DEBUG),
+    "debug_publish_resampled_reference_trajectory": NoEffect(_DEBUG),
+    "mass_kg": NoEffect(_NESTED),
+    "mass_fl": NoEffect(_NESTED),
+    "mass_fr": NoEffect(_NESTED),
+    "mass_rl": NoEffect(_NESTED),
+    "mass_rr": NoEffect(_NESTED),
+    "cf": NoEffect(_NESTED),
+    "cr": NoEffect(_NESTED),
+    "vehicle.mass_kg": NoEffect(_LOADS),
+    "vehicle.cg_to_front_m": NoEffect(_LOADS),
+    "vehicle.cg_to_rear_m": NoEffect(_LOADS),
+    # longitudinal/pid.param.yaml
+    "stopped_jerk": NoEffect(_UNREAD),
+    "ff_scale_min": NoEffect("of later Autoware; built in here as in 0.40", only=0.5),
+    "ff_scale_max": NoEffect("of later Autoware; built in here as in 0.40", only=2.0),
+    # trajectory_follower_node.param.yaml
+    "enable_control_cmd_horizon_pub": NoEffect("the experimental horizon is not published"),
+    "trajectory_reference_mode": NoEffect("of later Autoware; built in here", only="spatial"),
+    "cyclic_message_timeout_thr_sec": NoEffect("a diagnostic of later Autoware"),
+    # what ros2 param dump adds
+    "use_sim_time": NoEffect("time is the machine's own", only=False),
+    "start_type_description_service": NoEffect("this node has no services"),
+}
+
+PREFIXES: dict[str, NoEffect] = {
+    "qos_overrides.": NoEffect("the QoS of each topic is fixed by its contract"),
+}
+"""The same for all keys that begin so."""
+
+
+def no_effect(key: str) -> NoEffect | None:
+    """Return why a key has no effect, None when it is not a key of this kind."""
+    for prefix, reason in PREFIXES.items():
+        if key.startswith(prefix):
+            return reason
+    return NO_EFFECT.get(key)

@@ -1,0 +1,99 @@
+"""Every known key, from the dataclasses: where it lives and what its value may be."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import Field, dataclass, fields
+from typing import Any
+
+from safety_island.control.limits import MAX_RATE_TABLE
+from safety_island.control.params import (
+    LateralParams,
+    LongitudinalParams,
+    NodeParams,
+    Parameters,
+    VehicleParams,
+    key_of,
+)
+
+GROUPS: dict[str, Any] = {
+    "vehicle": VehicleParams,
+    "node": NodeParams,
+    "lateral": LateralParams,
+    "longitudinal": LongitudinalParams,
+}
+"""Attribute of ``Parameters`` -> its dataclass."""
+
+
+@dataclass(frozen=True)
+class Known:
+    """One parameter."""
+
+    key: str
+    group: str  # attribute of Parameters
+    name: str  # attribute of the group
+    kind: str  # float, int, bool, str or list (of float)
+    unit: str
+    doc: str
+    low: float
+    high: float
+    choices: tuple[str, ...]
+
+    @property
+    def range_text(self) -> str:
+        """The values that are allowed, without type and unit."""
+        if self.kind == "bool":
+            return "true or false"
+        if self.kind == "str":
+            return ", ".join(self.choices)
+        return f"{self.low:g} to {self.high:g}"
+
+    @property
+    def allowed_text(self) -> str:
+        """What a value must be, for the words 'expected ...' of an error."""
+        before = {
+            "float": "a number from ",
+            "int": "a whole number from ",
+            "list": f"a list of 1 to {MAX_RATE_TABLE} numbers from ",
+            "str": "one of ",
+            "bool": "",
+        }
+        return before[self.kind] + self.range_text + (f" {self.unit}" if self.unit else "")
+
+
+def _known(group: str, item: Field[Any]) -> Known:
+    meta = item.metadata
+    return Known(
+        key=key_of(item),
+        group=group,
+        name=item.name,
+        kind="list" if str(item.type).startswith("tuple") else str(item.type),
+        unit=meta["unit"],
+        doc=meta["doc"],
+        low=meta["low"],
+        high=meta["high"],
+        choices=meta["choices"] or (),
+    )
+
+
+KNOWN: dict[str, Known] = {
+    known.key: known
+    for known in (_known(group, item) for group, cls in GROUPS.items() for item in fields(cls))
+}
+"""YAML key -> parameter, in the order of the dataclasses."""
+
+
+def values_of(parameters: Parameters) -> dict[str, Any]:
+    """Return every value of a set by its YAML key."""
+    return {
+        known.key: getattr(getattr(parameters, known.group), known.name) for known in KNOWN.values()
+    }
+
+
+def assemble(values: Mapping[str, Any]) -> Parameters:
+    """Return the set with these values; every key of KNOWN must be there."""
+    groups = {
+        group: cls(**{k.name: values[k.key] for k in KNOWN.values() if k.group == group})
+        for group, cls in GROUPS.items()
+    }
+    return Parameters(**groups)
