@@ -3,15 +3,31 @@
 from __future__ import annotations
 
 import os
+import random
 from collections.abc import Iterator
-from itertools import count
 
 import pytest
 
-_counter = count(int(os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw")) * 60 + 20)
+from safety_island.cli.domains import reserve
+
+FIRST, LAST = 20, 229
+"""Domain ids that tests take; a person's own programs use lower ones."""
 
 
 @pytest.fixture
 def domain_id() -> Iterator[int]:
-    """A DDS domain id (20 to 229) that no other test of this run uses at the same time."""
-    yield 20 + (next(_counter) - 20) % 210
+    """A DDS domain id that no other test, of this run or another, uses at the same time."""
+    wanted = list(range(FIRST, LAST + 1))
+    random.Random(os.getpid() * 1_000_003 + id(wanted)).shuffle(wanted)
+    with reserve((domain,) for domain in wanted) as found:
+        assert found is not None, f"every DDS domain id from {FIRST} to {LAST} is in use"
+        yield found[0]
+
+
+@pytest.fixture
+def domain_pair(domain_id: int) -> Iterator[tuple[int, int]]:
+    """Two DDS domain ids, for a bridge between them."""
+    others = ((domain,) for domain in range(LAST, FIRST - 1, -1) if domain != domain_id)
+    with reserve(others) as found:
+        assert found is not None, f"every DDS domain id from {FIRST} to {LAST} is in use"
+        yield domain_id, found[0]
