@@ -86,5 +86,6 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _complain(message: str, code: int) -> int:
-    print(f"island: error: {message}", file=sys.stderr)
+    for line in message.splitlines():
+        print(f"island: error: {line}", file=sys.stderr)
     return code

@@ -31,11 +31,14 @@ class Parser(argparse.ArgumentParser):
         """Parse all arguments; an unknown option is answered with the nearest known one."""
         known, unknown = self.parse_known_args(arguments)
         if unknown:
-            self.error(f"unknown argument '{unknown[0]}'{self._nearest(unknown[0])}")
+            hint = nearest(unknown[0].split("=")[0], self._options())
+            self.error(f"unknown argument '{unknown[0]}'{hint}")
         return known
 
-    def _nearest(self, word: str) -> str:
-        return nearest(word.split("=")[0], self._option_string_actions)
+    def _options(self) -> list[str]:
+        below = (action.choices for action in self._actions if action.nargs == argparse.PARSER)
+        parsers = [self, *(parser for choices in below for parser in dict(choices or {}).values())]
+        return [option for parser in parsers for option in parser._option_string_actions]
 
 
 def nearest(word: str, choices: Iterable[str]) -> str:
