@@ -53,22 +53,16 @@ def _measure(params, inputs, lat):
         lat.cmd_prev_valid = True
 
 
-@entry(PARAMS, POINT, INPUTS, LATERAL_STATE, QP, TRACE, float)
-def lateral_prepare(params, points, inputs, state, qp, trace, now):
-    """Take this tick's inputs and build the quadratic programme; an MpcStatus."""
-    p = params[0]
-    i = inputs[0]
-    lat = state[0]
-    t = trace[0]
-    _set_trajectory(p, points, i, lat)
-    t.lateral_ready = lat.ref_n > 0
+@kernel
+def _prepare(params, points, inputs, lat, qp, trace, now):
+    """Take this tick's inputs and build the quadratic programme."""
+    _set_trajectory(params, points, inputs, lat)
+    trace.lateral_ready = lat.ref_n > 0
     if lat.ref_n == 0:
-        t.mpc_status = _NO_REFERENCE
+        trace.mpc_status = _NO_REFERENCE
         return _NO_REFERENCE
-    _measure(p, i, lat)
-    status = prepare_mpc(p, i, lat, qp[0], t, now)
-    t.mpc_status = status
-    return status
+    _measure(params, inputs, lat)
+    return prepare_mpc(params, inputs, lat, qp, trace, now)
 
 
 @kernel
@@ -118,53 +112,73 @@ def _reset_raw(params, lat):
     lat.raw_pprev = lat.raw_prev
 
 
-@entry(PARAMS, POINT, INPUTS, LATERAL_STATE, QP, COMMAND, TRACE, float, int)
-def lateral_finish(params, points, inputs, state, qp, command, trace, now, status):
-    """Turn the solution (or its failure) into the lateral command; returns ``status``.
-
-    After a failure the last output angle is held with rate 0.
-    """
-    p = params[0]
-    i = inputs[0]
-    lat = state[0]
-    t = trace[0]
-    c = command[0]
-    solved = status == _SOLVED
+@kernel
+def _command_angle(params, inputs, lat, qp, trace, solved, now):
+    """Angle and rate of this tick, and whether they are remembered; a failure holds the angle."""
     angle = lat.output_angle
     rate = np.float32(0.0)
     if solved:
-        angle, rate = finish_mpc(p, lat, qp[0], t, now)
+        angle, rate = finish_mpc(params, lat, qp, trace, now)
     if solved and lat.is_under_control:
         remember_command(lat, angle, now)
     else:
-        _reset_raw(p, lat)
-    if p.steering_offset_enable_auto_steering_offset_removal:
-        update_offset(p, lat, i.vx, i.wz, i.steer)
-        angle = np.float32(angle + lat.offset) if solved else angle
-    t.stopped = _is_stopped(p, points, i, lat)
-    if t.stopped:
-        _hold(lat, c)
-        t.is_steer_converged = False
+        _reset_raw(params, lat)
+    if params.steering_offset_enable_auto_steering_offset_removal:
+        update_offset(params, lat, inputs.vx, inputs.wz, inputs.steer)
+        if solved:
+            angle = np.float32(angle + lat.offset)
+    return angle, rate
+
+
+@kernel
+def _finish(params, points, inputs, lat, qp, command, trace, now, status):
+    """Turn the solution, or its failure, into the lateral command."""
+    solved = status == _SOLVED
+    angle, rate = _command_angle(params, inputs, lat, qp, trace, solved, now)
+    trace.stopped = _is_stopped(params, points, inputs, lat)
+    trace.is_steer_converged = False
+    if trace.stopped:
+        _hold(lat, command)
     else:
         lat.cmd_prev_angle = angle
         lat.cmd_prev_rate = rate
-        _output(c, lat, angle, rate)
-        t.is_steer_converged = (
-            solved and is_mpc_converged(p, lat) and is_steer_converged(p, points, i, lat, angle)
-        )
-    c.is_defined_steering_tire_rotation_rate = solved
-    t.mpc_status = status
-    t.mpc_history_filled = lat.history_filled
-    t.shape_changed = has_shape_changed(p, points, i, lat)
-    t.is_forward_shift = lat.is_forward
-    t.under_control = lat.is_under_control
-    t.raw_steer_cmd_prev = lat.raw_prev
-    t.raw_steer_cmd_pprev = lat.raw_pprev
-    t.steering_offset = lat.offset
+        _output(command, lat, angle, rate)
+        if solved and is_mpc_converged(params, lat):
+            trace.is_steer_converged = is_steer_converged(params, points, inputs, lat, angle)
+    command.is_defined_steering_tire_rotation_rate = solved
+    trace.mpc_status = status
+    trace.mpc_history_filled = lat.history_filled
+    trace.shape_changed = has_shape_changed(params, points, inputs, lat)
+    trace.is_forward_shift = lat.is_forward
+    trace.under_control = lat.is_under_control
+    trace.raw_steer_cmd_prev = lat.raw_prev
+    trace.raw_steer_cmd_pprev = lat.raw_pprev
+    trace.steering_offset = lat.offset
+
+
+@entry(PARAMS, POINT, INPUTS, LATERAL_STATE, QP, COMMAND, TRACE, float)
+def lateral_step(params, points, inputs, state, qp, command, trace, now):
+    """One tick with a solver of our own; an MpcStatus.
+
+    After a failure the last output angle is held with rate 0; NO_REFERENCE changes nothing.
+    """
+    lat = state[0]
+    status = _prepare(params[0], points, inputs[0], lat, qp[0], trace[0], now)
+    if status == _SOLVED:
+        status = solve(params[0], qp[0], trace[0])
+    if status != _NO_REFERENCE:
+        _finish(params[0], points, inputs[0], lat, qp[0], command[0], trace[0], now, status)
     return status
 
 
-@entry(PARAMS, QP, TRACE)
-def lateral_solve(params, qp, trace):
-    """Solve the prepared problem with a solver of our own and check the solution."""
-    return solve(params[0], qp[0], trace[0])
+@entry(PARAMS, POINT, INPUTS, LATERAL_STATE, QP, TRACE, float)
+def lateral_prepare(params, points, inputs, state, qp, trace, now):
+    """The first part of ``lateral_step``, for a solver that is no kernel."""
+    return _prepare(params[0], points, inputs[0], state[0], qp[0], trace[0], now)
+
+
+@entry(PARAMS, POINT, INPUTS, LATERAL_STATE, QP, COMMAND, TRACE, float, int)
+def lateral_finish(params, points, inputs, state, qp, command, trace, now, status):
+    """The last part of ``lateral_step``: ``status`` is how the solver ended."""
+    _finish(params[0], points, inputs[0], state[0], qp[0], command[0], trace[0], now, status)
+    return status

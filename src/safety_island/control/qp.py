@@ -1,50 +1,88 @@
-"""The quadratic programme of the MPC: its memory, and the exact solve of it.
+"""Exact solve of the MPC's quadratic programme: Cholesky first, the active-set solver when needed.
 
-    minimise 1/2 u'H u + f'u   subject to   lb <= u <= ub,  lbA_i <= u_i - u_(i-1) <= ubA_i
-
-with u_(-1) = 0, so the first row of the second set bounds u_0 itself. In matrix form the rows are
-[I; D] with D the first-difference matrix. Constraint ``c`` is u_c for c < MAX_HORIZON, and
-u_i - u_(i-1) with i = c - MAX_HORIZON from there on.
+Fill ``H``, ``f`` and the four bounds of a record with ``QP_COLUMNS`` (see ``qp_records``), call
+``factorize``, then ``solve_unconstrained`` or ``solve_constrained``, then ``check_solution``.
 """
 
-from typing import Any
+from safety_island.control.cholesky import factorize, solve_unconstrained
+from safety_island.control.daqp import INFEASIBLE, SOLVED, VIOLATION, solve_dual
+from safety_island.control.kernel import entry, kernel
+from safety_island.control.qp_check import check_solution
+from safety_island.control.qp_records import QP, QP_COLUMNS
 
-from safety_island.control.limits import MAX_HORIZON
-from safety_island.control.records import record
-
-_N = MAX_HORIZON
-
-QP_COLUMNS: list[Any] = [
-    ("H", "f8", (_N, _N)),  # symmetric, both triangles; row and column n are overwritten
-    ("f", "f8", (_N,)),
-    ("lb", "f8", (_N,)),  # [rad]
-    ("ub", "f8", (_N,)),
-    ("lbA", "f8", (_N,)),  # [rad] a step
-    ("ubA", "f8", (_N,)),
-    ("u", "f8", (_N,)),  # the solution [rad]
-    ("qp_iterations", "i8"),  # of the last solve_constrained; 0: no constraint acted
-    ("qp_active_count", "i8"),  # constraints in the working set; the next solve starts from it
-    ("qp_violation", "f8"),  # check_solution: greatest violation of a bound [rad]
-    ("qp_residual", "f8"),  # check_solution: of the optimality conditions, relative
-    # work memory
-    ("qp_R", "f8", (_N, _N)),  # Cholesky factor, H = R'R, upper triangular
-    ("qp_inverse", "f8", (_N,)),  # 1 / diag(R)
-    ("qp_v", "f8", (_N,)),  # R^-T f
-    ("qp_free", "f8", (_N,)),  # the unconstrained minimiser
-    ("qp_w", "f8", (_N,)),  # R (u - free)
-    ("qp_M", "f8", (_N + 1, _N)),  # rows R^-T a of the working set, by slot
-    ("qp_slot", "i8", (_N + 1,)),  # position in the working set -> row of qp_M; a permutation
-    ("qp_active", "i8", (_N + 1,)),  # working set: constraint number
-    ("qp_side", "i8", (_N + 1,)),  # +1 upper bound, -1 lower bound, 0 both (equality)
-    ("qp_in_set", "i8", (2 * _N,)),  # 1 for the constraints of the working set
-    ("qp_excess", "f8", (_N + 1,)),  # a'free - bound
-    ("qp_multiplier", "f8", (_N + 1,)),  # negative on a lower bound
-    ("qp_target", "f8", (_N + 1,)),  # multipliers that the present working set asks for
-    ("qp_L", "f8", (_N + 1, _N + 1)),  # unit lower triangular, M M' = L D L'
-    ("qp_D", "f8", (_N + 1,)),
-    ("qp_y", "f8", (_N + 1,)),  # L^-1 excess
+__all__ = [
+    "MAX_ITERATIONS",
+    "QP",
+    "QP_COLUMNS",
+    "check_solution",
+    "factorize",
+    "forget_active_set",
+    "solve_constrained",
+    "solve_problem",
+    "solve_unconstrained",
 ]
-"""Columns that a state record needs so that it can be given to the solvers."""
 
-QP = record(QP_COLUMNS)
-"""A quadratic programme that stands alone (tests, benchmark)."""
+MAX_ITERATIONS = 600
+"""Working sets that the active-set solver may try; 50 steps took up to 130."""
+
+
+@kernel
+def solve_constrained(q, n, max_iterations):
+    """Set ``u`` to the minimiser inside all bounds; ``factorize`` must have been called.
+
+    Returns SOLVED, INFEASIBLE or ITERATION_LIMIT. The active constraints of the last call are the
+    first guess of the next; they change the way to the solution, not the solution.
+    """
+    q.qp_iterations = 0
+    if not _bounds_in_order(q, n):
+        forget_active_set(q)
+        return INFEASIBLE
+    solve_unconstrained(q, n)
+    if _inside(q, n):
+        forget_active_set(q)
+        return SOLVED
+    for i in range(n):
+        q.qp_free[i] = q.u[i]
+    return solve_dual(q, n, max_iterations)
+
+
+@kernel
+def forget_active_set(q):
+    """Let the next ``solve_constrained`` start without a guess."""
+    q.qp_active_count = 0
+
+
+@kernel
+def _bounds_in_order(q, n):
+    """Whether no lower bound is above its upper bound (a NaN is not in order either)."""
+    for i in range(n):
+        if not (q.lb[i] <= q.ub[i] and q.lbA[i] <= q.ubA[i]):
+            return False
+    return True
+
+
+@kernel
+def _inside(q, n):
+    """Whether ``u`` keeps all bounds."""
+    before = 0.0
+    for i in range(n):
+        value = q.u[i]
+        change = value - before
+        if value > q.ub[i] + VIOLATION or value < q.lb[i] - VIOLATION:
+            return False
+        if change > q.ubA[i] + VIOLATION or change < q.lbA[i] - VIOLATION:
+            return False
+        before = value
+    return True
+
+
+@entry(QP, int, int)
+def solve_problem(qp, n, max_iterations):
+    """Factorize, solve with all constraints and check a problem that stands alone."""
+    q = qp[0]
+    status = factorize(q, n)
+    if status == SOLVED:
+        status = solve_constrained(q, n, max_iterations)
+    if status == SOLVED:
+        status = check_solution(q, n)
+    return status

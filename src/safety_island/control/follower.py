@@ -1,0 +1,236 @@
+"""The trajectory follower: lateral and longitudinal controller over one set of inputs.
+
+This is the thin Python layer around the kernels. Inputs are offered one by one; what is refused
+leaves everything as it was. A tick is ``step(now)``; a node that measures the two controllers
+calls ``run_lateral``, ``run_longitudinal`` and ``sync`` itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from safety_island.control.input_check import (
+    MAX_ACCELERATION,
+    MAX_POSITION,
+    MAX_SPEED,
+    MAX_TURN,
+    check_quaternion,
+    check_trajectory,
+    check_value,
+)
+from safety_island.control.kernel import plain
+from safety_island.control.lateral import lateral_finish, lateral_prepare, lateral_step
+from safety_island.control.lateral_state import new_lateral_state
+from safety_island.control.limits import MAX_POINTS
+from safety_island.control.longitudinal import longitudinal_step
+from safety_island.control.longitudinal_state import (
+    new_longitudinal_state,
+    new_longitudinal_work,
+    reset_longitudinal_trace,
+)
+from safety_island.control.params import Parameters
+from safety_island.control.qp import QP
+from safety_island.control.records import (
+    COMMAND,
+    INPUTS,
+    TRACE,
+    Records,
+    new_points,
+    pack_parameters,
+)
+from safety_island.control.status import MpcStatus, Refusal
+
+INPUT_NAMES = ("trajectory", "odometry", "steering", "acceleration", "operation mode")
+"""The five inputs without which there is no tick."""
+
+_FEWEST_FOR_MPC = 3
+_check_value = plain(check_value)
+_check_quaternion = plain(check_quaternion)
+
+
+def _first_refusal(values: tuple[float, ...], bounds: tuple[float, ...]) -> Refusal:
+    for value, bound in zip(values, bounds, strict=True):
+        if not abs(value) <= bound:
+            return Refusal(_check_value(value, bound))
+    return Refusal.ACCEPTED
+
+
+class TrajectoryFollower:
+    """Autoware's MPC and PID controllers, with the memory of all past ticks.
+
+    ``inputs``, ``command`` and ``trace`` are records of shape (1,); ``points`` is the trajectory
+    in force. Raises ConfigurationError when the chosen solver is not installed.
+    """
+
+    def __init__(self, parameters: Parameters) -> None:
+        self.parameters = parameters
+        self.inputs: Records = np.zeros(1, INPUTS)
+        self.inputs[0].qw = 1.0
+        self.points = new_points()
+        self.incoming = new_points()
+        self.command: Records = np.zeros(1, COMMAND)
+        self.trace: Records = np.zeros(1, TRACE)
+        reset_longitudinal_trace(self.trace)
+        self._missing = set(INPUT_NAMES)
+        self._has_path = False
+        self._params = pack_parameters(parameters)
+        self._lateral = new_lateral_state(parameters)
+        self._longitudinal = new_longitudinal_state()
+        self._work = new_longitudinal_work()
+        self._qp: Records = np.zeros(1, QP)
+        self._solve = self._external_solver()
+        for kernel in (check_trajectory, lateral_step, longitudinal_step):
+            kernel.prepare()
+
+    def _external_solver(self) -> Callable[[Records, int], MpcStatus] | None:
+        """The solver that is no kernel, when one is chosen."""
+        if self.parameters.lateral.qp_solver_type != "osqp":
+            return None
+        from safety_island.control.osqp_solver import OsqpSolver
+
+        for kernel in (lateral_prepare, lateral_finish):
+            kernel.prepare()
+        solver = OsqpSolver(self.parameters.lateral.mpc_prediction_horizon)
+        return lambda qp, n: MpcStatus(solver.solve(qp[0]))
+
+    # Inputs: each returns why it was refused, or ACCEPTED.
+
+    def offer_trajectory(self, points: Records, stamp: float) -> Refusal:
+        """Offer ``points`` (POINT records) with the stamp [s] of their header."""
+        if len(points) > MAX_POINTS:
+            return Refusal.TOO_MANY_POINTS
+        self.incoming[: len(points)] = points
+        return self.offer_incoming(len(points), stamp)
+
+    def offer_incoming(self, n: int, stamp: float) -> Refusal:
+        """Offer the first ``n`` points of ``incoming``, into which a decoder may write directly."""
+        refusal = Refusal(check_trajectory.call(self._params, self.incoming, n))
+        if refusal is Refusal.ACCEPTED and not np.isfinite(stamp):
+            refusal = Refusal.NOT_FINITE
+        if refusal is Refusal.ACCEPTED:
+            self.points, self.incoming = self.incoming, self.points
+            inputs = self.inputs[0]
+            inputs.n_points = n
+            inputs.trajectory_id += 1
+            inputs.trajectory_stamp = stamp
+            self._has_path = self._has_path or n >= _FEWEST_FOR_MPC
+            self._missing.discard("trajectory")
+        return refusal
+
+    def offer_odometry(
+        self,
+        x: float,
+        y: float,
+        z: float,
+        qx: float,
+        qy: float,
+        qz: float,
+        qw: float,
+        vx: float,
+        vy: float,
+        wz: float,
+    ) -> Refusal:
+        """Offer the ego's pose in the map [m] and its body velocity [m/s, rad/s]."""
+        bounds = (MAX_POSITION,) * 3 + (MAX_SPEED,) * 2 + (MAX_TURN,)
+        refusal = _first_refusal((x, y, z, vx, vy, wz), bounds)
+        if refusal is Refusal.ACCEPTED:
+            refusal = Refusal(_check_quaternion(qx, qy, qz, qw))
+        if refusal is Refusal.ACCEPTED:
+            i = self.inputs[0]
+            i.x, i.y, i.z, i.qx, i.qy, i.qz, i.qw = x, y, z, qx, qy, qz, qw
+            i.vx, i.vy, i.wz = vx, vy, wz
+            self._missing.discard("odometry")
+        return refusal
+
+    def offer_steering(self, angle: float) -> Refusal:
+        """Offer the measured tyre angle [rad]."""
+        refusal = _first_refusal((angle,), (MAX_TURN,))
+        if refusal is Refusal.ACCEPTED:
+            self.inputs[0].steer = angle
+            self._missing.discard("steering")
+        return refusal
+
+    def offer_acceleration(self, ax: float) -> Refusal:
+        """Offer the measured acceleration along body x [m/s^2]."""
+        refusal = _first_refusal((ax,), (MAX_ACCELERATION,))
+        if refusal is Refusal.ACCEPTED:
+            self.inputs[0].ax = ax
+            self._missing.discard("acceleration")
+        return refusal
+
+    def offer_operation_mode(self, mode: int, enabled: bool) -> Refusal:
+        """Offer the operation mode and whether Autoware's control is enabled."""
+        if not 0 <= mode <= 255:
+            return Refusal.OUT_OF_RANGE
+        self.inputs[0].mode = mode
+        self.inputs[0].enabled = enabled
+        self._missing.discard("operation mode")
+        return Refusal.ACCEPTED
+
+    def missing(self) -> tuple[str, ...]:
+        """Names of the inputs that were never accepted, in the order of INPUT_NAMES."""
+        return tuple(name for name in INPUT_NAMES if name in self._missing)
+
+    def is_ready(self) -> bool:
+        """Whether both controllers can run: every input is there, and a path of three points."""
+        return not self._missing and self._has_path
+
+    # A tick.
+
+    def run_lateral(self, now: float) -> MpcStatus:
+        """Run the lateral controller at ``now`` [s]; NO_REFERENCE leaves the command alone."""
+        if self._solve is None:
+            return MpcStatus(
+                lateral_step.call(
+                    self._params,
+                    self.points,
+                    self.inputs,
+                    self._lateral,
+                    self._qp,
+                    self.command,
+                    self.trace,
+                    now,
+                )
+            )
+        return self._run_lateral_in_parts(self._solve, now)
+
+    def _run_lateral_in_parts(
+        self, solve: Callable[[Records, int], MpcStatus], now: float
+    ) -> MpcStatus:
+        """Run the lateral controller around a solver that is no kernel."""
+        before = (self._params, self.points, self.inputs, self._lateral, self._qp)
+        status = lateral_prepare.call(*before, self.trace, now)
+        if status == MpcStatus.SOLVED:
+            status = solve(self._qp, self.parameters.lateral.mpc_prediction_horizon)
+        if status != MpcStatus.NO_REFERENCE:
+            lateral_finish.call(*before, self.command, self.trace, now, int(status))
+        return MpcStatus(status)
+
+    def run_longitudinal(self, now: float) -> int:
+        """Run the longitudinal controller at ``now`` [s]; a LongitudinalState, or a skip (< 0)."""
+        return longitudinal_step.call(
+            self._params,
+            self.points,
+            self.inputs,
+            self._longitudinal,
+            self._work,
+            self.command,
+            self.trace,
+            now,
+        )
+
+    def sync(self) -> None:
+        """Hand each controller what the other needs in the next tick."""
+        self._longitudinal[0].is_steer_converged = self.trace[0].is_steer_converged
+
+    def step(self, now: float) -> bool:
+        """Run one whole tick at ``now`` [s]; returns whether ``command`` is a new command."""
+        if not self.is_ready() or self.run_lateral(now) is MpcStatus.NO_REFERENCE:
+            return False
+        if self.run_longitudinal(now) < 0:
+            return False
+        self.command[0].stamp = now
+        self.sync()
+        return True

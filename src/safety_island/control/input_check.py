@@ -1,0 +1,110 @@
+"""Refusal of inputs that must not touch the controllers: every value finite and within reason.
+
+The bounds are wide: they keep squares and sums of finite numbers finite, nothing more.
+"""
+
+import math
+
+from safety_island.control.kernel import entry, kernel
+from safety_island.control.limits import MAX_POINTS, MAX_REFERENCE
+from safety_island.control.records import PARAMS, POINT
+from safety_island.control.status import Refusal
+
+MAX_POSITION = 1e7
+"""[m]; a UTM northing stays below it."""
+MAX_SPEED = 150.0
+"""[m/s]"""
+MAX_ACCELERATION = 100.0
+"""[m/s^2]"""
+MAX_TURN = 100.0
+"""Angles [rad] and turn rates [rad/s]."""
+
+_ACCEPTED = int(Refusal.ACCEPTED)
+_NOT_FINITE = int(Refusal.NOT_FINITE)
+_TOO_FEW = int(Refusal.TOO_FEW_POINTS)
+_TOO_MANY = int(Refusal.TOO_MANY_POINTS)
+_COINCIDENT = int(Refusal.COINCIDENT_POINTS)
+_BAD_QUATERNION = int(Refusal.BAD_QUATERNION)
+_TOO_LONG = int(Refusal.TOO_LONG)
+_OUT_OF_RANGE = int(Refusal.OUT_OF_RANGE)
+
+_FEWEST_POINTS = 2
+_NORM_TOLERANCE = 0.01
+_SAME_PLACE = 1e-8
+_EXTENSION_POINTS = 256  # room for the points that the terminal extension appends
+
+
+@kernel
+def check_value(value, bound):
+    """Refusal of one number that must lie within +-bound."""
+    if abs(value) <= bound:
+        return _ACCEPTED
+    return _OUT_OF_RANGE if math.isfinite(value) else _NOT_FINITE
+
+
+@kernel
+def check_quaternion(x, y, z, w):
+    """Refusal of an orientation whose norm is more than 1 % off."""
+    square = x * x + y * y + z * z + w * w
+    if abs(math.sqrt(square) - 1.0) <= _NORM_TOLERANCE:
+        return _ACCEPTED
+    return _BAD_QUATERNION if math.isfinite(square) else _NOT_FINITE
+
+
+@kernel
+def _check_point(point):
+    """Refusal of one trajectory point; the first reason found."""
+    place = max(abs(point.x), abs(point.y), abs(point.z))
+    speed = max(abs(point.v), abs(point.v_lat))
+    turn = max(abs(point.heading_rate), abs(point.front_wheel), abs(point.rear_wheel))
+    # a sum finds the NaN that max may hide
+    total = point.x + point.y + point.z + point.v + point.v_lat + point.acc
+    total += point.heading_rate + point.front_wheel + point.rear_wheel
+    if not math.isfinite(total):
+        return _NOT_FINITE
+    in_range = place <= MAX_POSITION and speed <= MAX_SPEED and turn <= MAX_TURN
+    if not in_range or abs(point.acc) > MAX_ACCELERATION:
+        return _OUT_OF_RANGE
+    return check_quaternion(point.qx, point.qy, point.qz, point.qw)
+
+
+@kernel
+def _length_bound(points, n):
+    """At least the 2-D length of a trajectory [m]; the length itself where that decides."""
+    bound = 0.0
+    for i in range(1, n):
+        bound += abs(points[i].x - points[i - 1].x) + abs(points[i].y - points[i - 1].y)
+    return bound
+
+
+@kernel
+def _length(points, n):
+    """The 2-D length of a trajectory [m]."""
+    total = 0.0
+    for i in range(1, n):
+        dx = points[i].x - points[i - 1].x
+        dy = points[i].y - points[i - 1].y
+        total += math.sqrt(dx * dx + dy * dy)
+    return total
+
+
+@entry(PARAMS, POINT, int)
+def check_trajectory(params, points, n):
+    """Refusal of a received trajectory ``points[:n]``."""
+    if n < _FEWEST_POINTS:
+        return _TOO_FEW
+    if n > MAX_POINTS:
+        return _TOO_MANY
+    for i in range(n):
+        reason = _check_point(points[i])
+        if reason != _ACCEPTED:
+            return reason
+        if i > 0:
+            dx = abs(points[i].x - points[i - 1].x)
+            dy = abs(points[i].y - points[i - 1].y)
+            if dx < _SAME_PLACE and dy < _SAME_PLACE:
+                return _COINCIDENT
+    room = (MAX_REFERENCE - _EXTENSION_POINTS) * params[0].traj_resample_dist
+    if _length_bound(points, n) > room and _length(points, n) > room:
+        return _TOO_LONG
+    return _ACCEPTED
