@@ -1,0 +1,1 @@
+"""DDS for the safety island: participant, publisher, subscription, QoS, configuration, topics."""

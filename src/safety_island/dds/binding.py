@@ -1,0 +1,103 @@
+"""The only place that touches the private C layer of cyclonedds: raw samples in and out.
+
+``cyclonedds._clayer`` is not an API: it may change with any release. Hence the exact pin, and
+``tests/dds/test_binding.py``, which fails when what is used here behaves differently.
+"""
+
+from __future__ import annotations
+
+from importlib.metadata import version
+from typing import Any, NamedTuple
+
+from cyclonedds import _clayer
+from cyclonedds.core import Entity, InstanceState, SampleState, ViewState
+
+from safety_island.dds.errors import DdsError
+
+PINNED_VERSION = "11.0.1"
+ANY = SampleState.Any | ViewState.Any | InstanceState.Any
+MINIMUM_WRITE = 4
+"""The C layer reads a header of this many bytes without looking whether it is there."""
+
+RETCODE_BAD_PARAMETER = -3
+RETCODE_TIMEOUT = -10
+
+
+class RawSample(NamedTuple):
+    """One taken sample; without ``valid`` it only tells that an instance or a writer went away."""
+
+    data: bytes
+    valid: bool
+    source_timestamp_ns: int
+    publication_handle: int
+
+
+def check_version() -> None:
+    """Raise DdsError unless the installed cyclonedds is the one that this module was made for."""
+    found = version("cyclonedds")
+    if found != PINNED_VERSION:
+        raise DdsError(
+            f"found cyclonedds {found}, expected exactly {PINNED_VERSION};"
+            f" run: pip install cyclonedds=={PINNED_VERSION}"
+        )
+
+
+def take(reader: int, limit: int) -> list[RawSample]:
+    """Take up to ``limit`` samples, oldest first, without decoding them.
+
+    Raises DdsError with the return code of the library.
+    """
+    found = _clayer.ddspy_take(reader, ANY, limit)
+    if isinstance(found, int):
+        raise DdsError(f"taking samples failed: {strerror(found)}")
+    return [
+        RawSample(data, info.valid_data, info.source_timestamp, info.publication_handle)
+        for data, info in found
+    ]
+
+
+def write(writer: int, data: bytes) -> int:
+    """Write serialized CDR (header included) and return 0 or a negative return code.
+
+    Data shorter than a header are refused here. RTPS wants a multiple of four bytes; the C layer
+    reads that far, so the data are filled up.
+    """
+    if len(data) < MINIMUM_WRITE:
+        return RETCODE_BAD_PARAMETER
+    surplus = len(data) & 3
+    code: int = _clayer.ddspy_write(writer, data + bytes(4 - surplus) if surplus else data)
+    return code
+
+
+def matched_writer(reader: int, handle: int) -> bytes | None:
+    """Return the GUID (16 bytes) of a writer that the reader is matched with, by its handle."""
+    found = _clayer.ddspy_get_matched_publication_data(reader, handle, _key_of_endpoint, _no_qos)
+    return found if isinstance(found, bytes) else None
+
+
+def delete(entity: Entity) -> None:
+    """Delete a DDS entity and everything below it, now; a second time does nothing."""
+    known: Any = Entity._entities
+    if known.pop(entity._ref, None) is not None:
+        entity._delete(entity._ref)
+
+
+def strerror(code: int) -> str:
+    """Return a return code of the library in words."""
+    words = {
+        -1: "error",
+        -3: "bad parameter (not CDR of this type)",
+        -4: "precondition not met",
+        -5: "out of resources",
+        -9: "already deleted",
+        RETCODE_TIMEOUT: "timed out",
+    }
+    return f"{words.get(code, 'failed')} ({code})"
+
+
+def _key_of_endpoint(key: bytes, *_: object) -> bytes:
+    return key
+
+
+def _no_qos(_: int) -> None:
+    return None

@@ -1,0 +1,100 @@
+"""Who else is in the domain: endpoints of other participants, as DDS discovery tells them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from cyclonedds.builtin import (
+    BuiltinDataReader,
+    BuiltinTopic,
+    BuiltinTopicDcpsPublication,
+    BuiltinTopicDcpsSubscription,
+)
+from cyclonedds.core import InstanceState
+from cyclonedds.domain import DomainParticipant
+from cyclonedds.qos import Policy
+
+from safety_island.dds import binding
+from safety_island.dds.names import ros_topic_name
+from safety_island.dds.qos import Qos, from_cyclone
+from safety_island.messages.registry import ros_type_name
+
+_BATCH = 256
+PUBLICATIONS = BuiltinTopicDcpsPublication
+SUBSCRIPTIONS = BuiltinTopicDcpsSubscription
+
+
+@dataclass(frozen=True)
+class RemoteEndpoint:
+    """A publisher or subscription of another participant.
+
+    ``guid`` and ``participant`` are 16 bytes; ``topic`` and ``type_name`` are ROS names where they
+    follow ROS, else DDS names; ``type_hash`` is empty when it was not announced.
+    """
+
+    guid: bytes
+    participant: bytes
+    topic: str
+    type_name: str
+    qos: Qos
+    type_hash: str = ""
+
+
+class Endpoints:
+    """The endpoints of one kind (publications or subscriptions) that are alive now."""
+
+    def __init__(self, participant: DomainParticipant, kind: BuiltinTopic) -> None:
+        self._own = participant.guid.bytes
+        self._reader = BuiltinDataReader(participant, kind)
+        self._known: dict[bytes, RemoteEndpoint] = {}
+
+    def on(self, topic: str) -> list[RemoteEndpoint]:
+        """Return the live endpoints on a ROS topic, oldest first."""
+        self._refresh()
+        return [endpoint for endpoint in self._known.values() if endpoint.topic == topic]
+
+    def all(self) -> list[RemoteEndpoint]:
+        """Return every live endpoint of other participants."""
+        self._refresh()
+        return list(self._known.values())
+
+    def close(self) -> None:
+        """Stop listening to discovery."""
+        binding.delete(self._reader)
+
+    def _refresh(self) -> None:
+        while True:
+            events: list[Any] = self._reader.take(_BATCH)
+            for event in events:
+                self._note(event)
+            if len(events) < _BATCH:
+                return
+
+    def _note(self, event: Any) -> None:
+        guid = event.key.bytes
+        info = event.sample_info
+        if info.instance_state != InstanceState.Alive:
+            self._known.pop(guid, None)
+        elif info.valid_data and event.participant_key.bytes != self._own:
+            self._known[guid] = _endpoint(event)
+
+
+def _endpoint(event: Any) -> RemoteEndpoint:
+    return RemoteEndpoint(
+        guid=event.key.bytes,
+        participant=event.participant_key.bytes,
+        topic=ros_topic_name(event.topic_name),
+        type_name=ros_type_name(event.type_name),
+        qos=from_cyclone(event.qos),
+        type_hash=_type_hash(event.qos[Policy.Userdata]),
+    )
+
+
+def _type_hash(user_data: Any) -> str:
+    text = "" if user_data is None else bytes(user_data.data).decode("latin-1")
+    for item in text.split(";"):
+        name, _, value = item.partition("=")
+        if name == "typehash":
+            return value
+    return ""

@@ -1,0 +1,157 @@
+"""Publisher and subscription: serialized samples in and out, newest first served, all counted."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from cyclonedds.core import DDSException, InstanceState, ReadCondition, SampleState, ViewState
+from cyclonedds.domain import DomainParticipant
+from cyclonedds.pub import DataWriter
+from cyclonedds.sub import DataReader
+from cyclonedds.topic import Topic
+
+from safety_island.dds import binding
+from safety_island.dds.errors import DdsError
+from safety_island.dds.qos import Qos, cyclone_qos
+from safety_island.dds.types import type_hash_data
+
+_UNREAD = ViewState.Any | InstanceState.Any | SampleState.NotRead
+_BATCH = 1024
+UNKNOWN_WRITER = bytes(16)
+"""Stands for a writer that was gone before its sample was taken."""
+
+
+class Sample(NamedTuple):
+    """One received message: serialized CDR with its header, and where it came from."""
+
+    data: bytes
+    source_timestamp_ns: int
+    """The writer's wall clock when it wrote [ns since the epoch]."""
+    writer_guid: bytes
+
+
+class Publisher:
+    """Writes serialized messages to one topic; ``sent`` and ``failed`` count what became of it."""
+
+    def __init__(
+        self,
+        participant: DomainParticipant,
+        topic: Topic[Any],
+        type_name: str,
+        qos: Qos,
+        on_close: Callable[[Publisher], None],
+    ) -> None:
+        self.type_name = type_name
+        self.qos = qos
+        self.sent = 0
+        self.failed = 0
+        self.last_error = ""
+        wanted = cyclone_qos(qos, type_hash_data(type_name), writer=True)
+        self._writer: DataWriter[Any] = _create(DataWriter, participant, topic, wanted)
+        self._ref: int = self._writer._ref
+        self._on_close = on_close
+        self.guid: bytes = self._writer.guid.bytes
+
+    def write(self, data: bytes) -> bool:
+        """Send serialized CDR, header included; True when the library took it.
+
+        Never raises and never waits longer than ``qos.MAX_BLOCKING_NS``; a refusal (no CDR of this
+        type, or no room in time) is counted and told in ``last_error``.
+        """
+        code = binding.write(self._ref, data)
+        if code < 0:
+            self.failed += 1
+            self.last_error = binding.strerror(code)
+            return False
+        self.sent += 1
+        return True
+
+    def matched(self) -> int:
+        """Return how many subscriptions receive from this publisher now."""
+        return len(self._writer.get_matched_subscriptions())
+
+    def close(self) -> None:
+        """Leave the topic; the publisher must not be used afterwards."""
+        self._on_close(self)
+        binding.delete(self._writer)
+
+
+class Subscription:
+    """Receives serialized messages of one topic.
+
+    Counters: ``received`` samples taken, ``superseded`` those dropped for a newer one, ``invalid``
+    notices without data (a writer or an instance went away).
+    """
+
+    def __init__(
+        self,
+        participant: DomainParticipant,
+        topic: Topic[Any],
+        type_name: str,
+        qos: Qos,
+        on_close: Callable[[Subscription], None],
+        ignore_own: bool = False,
+    ) -> None:
+        self.type_name = type_name
+        self.qos = qos
+        self.received = 0
+        self.superseded = 0
+        self.invalid = 0
+        wanted = cyclone_qos(qos, type_hash_data(type_name), writer=False, ignore_own=ignore_own)
+        self._reader: DataReader[Any] = _create(DataReader, participant, topic, wanted)
+        self._ref: int = self._reader._ref
+        self._writers: dict[int, bytes] = {}
+        self._on_close = on_close
+        self.condition = ReadCondition(self._reader, _UNREAD)
+        self.guid: bytes = self._reader.guid.bytes
+
+    def take_newest(self) -> Sample | None:
+        """Return the newest sample since the last call and drop the older ones; None when none."""
+        samples = self._take()
+        if not samples:
+            return None
+        self.superseded += len(samples) - 1
+        return self._sample(samples[-1])
+
+    def take_all(self) -> list[Sample]:
+        """Return all samples since the last call, oldest first."""
+        return [self._sample(raw) for raw in self._take()]
+
+    def matched(self) -> int:
+        """Return how many publishers this subscription receives from now."""
+        return len(self._reader.get_matched_publications())
+
+    def close(self) -> None:
+        """Leave the topic; the subscription must not be used afterwards."""
+        self._on_close(self)
+        binding.delete(self.condition)
+        binding.delete(self._reader)
+
+    def _take(self) -> list[binding.RawSample]:
+        samples: list[binding.RawSample] = []
+        taken = binding.take(self._ref, _BATCH)
+        samples += [raw for raw in taken if raw.valid]
+        self.invalid += len(taken) - len(samples)
+        self.received += len(samples)
+        return samples
+
+    def _sample(self, raw: binding.RawSample) -> Sample:
+        guid = self._writers.get(raw.publication_handle) or self._find(raw.publication_handle)
+        return Sample(raw.data, raw.source_timestamp_ns, guid)
+
+    def _find(self, handle: int) -> bytes:
+        guid = binding.matched_writer(self._ref, handle)
+        if guid is None:
+            return UNKNOWN_WRITER
+        if len(self._writers) >= _BATCH:
+            self._writers.clear()
+        self._writers[handle] = guid
+        return guid
+
+
+def _create(kind: Any, participant: DomainParticipant, topic: Topic[Any], qos: Any) -> Any:
+    try:
+        return kind(participant, topic, qos)
+    except DDSException as problem:
+        raise DdsError(f"{kind.__name__} on {topic.name} was refused: {problem}") from None

@@ -1,0 +1,150 @@
+"""The one table of the island's topics: subscriptions, age limits, bridge file and docs use it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from safety_island.dds.qos import DEFAULT, INPUT_DEPTH, LATCHED, Qos
+
+MAIN_COMPUTE_DOMAIN = 1
+SAFETY_ISLAND_DOMAIN = 2
+
+
+class Direction(StrEnum):
+    """Seen from the island."""
+
+    IN = "in"
+    OUT = "out"
+
+
+@dataclass(frozen=True)
+class TopicEntry:
+    """One topic of the island.
+
+    ``key`` is its short name in code and reports; ``rate_hz`` [Hz] is the expected rate, None when
+    it is sent on change, 0 for once a tick; ``age_limit_s`` and ``age_warning_s`` [s] bound the
+    time since the last receipt, None for no bound; ``bridged`` is (from domain, to domain).
+    """
+
+    key: str
+    name: str
+    type_name: str
+    direction: Direction
+    qos: Qos
+    rate_hz: float | None
+    age_limit_s: float | None = None
+    age_warning_s: float | None = None
+    bridged: tuple[int, int] | None = None
+
+    @property
+    def subscription_qos(self) -> Qos:
+        """What the island subscribes with: as published, with room to count what it drops."""
+        return self.qos.with_depth(INPUT_DEPTH)
+
+
+EVERY_TICK = 0.0
+_INWARD = (MAIN_COMPUTE_DOMAIN, SAFETY_ISLAND_DOMAIN)
+_OUTWARD = (SAFETY_ISLAND_DOMAIN, MAIN_COMPUTE_DOMAIN)
+_FAST_RATE = 35.6
+_FAST_LIMIT = 0.5
+_FAST_WARNING = 0.28
+
+STEERING = TopicEntry(
+    "steering",
+    "/vehicle/status/steering_status",
+    "autoware_vehicle_msgs/msg/SteeringReport",
+    Direction.IN,
+    DEFAULT,
+    _FAST_RATE,
+    _FAST_LIMIT,
+    _FAST_WARNING,
+    _INWARD,
+)
+TRAJECTORY = TopicEntry(
+    "trajectory",
+    "/planning/scenario_planning/trajectory",
+    "autoware_planning_msgs/msg/Trajectory",
+    Direction.IN,
+    DEFAULT,
+    7.4,
+    0.9,
+    None,
+    _INWARD,
+)
+ODOMETRY = TopicEntry(
+    "odometry",
+    "/localization/kinematic_state",
+    "nav_msgs/msg/Odometry",
+    Direction.IN,
+    DEFAULT,
+    _FAST_RATE,
+    _FAST_LIMIT,
+    _FAST_WARNING,
+    _INWARD,
+)
+ACCELERATION = TopicEntry(
+    "acceleration",
+    "/localization/acceleration",
+    "geometry_msgs/msg/AccelWithCovarianceStamped",
+    Direction.IN,
+    DEFAULT,
+    _FAST_RATE,
+    _FAST_LIMIT,
+    _FAST_WARNING,
+    _INWARD,
+)
+OPERATION_MODE = TopicEntry(
+    "operation_mode",
+    "/system/operation_mode/state",
+    "autoware_adapi_v1_msgs/msg/OperationModeState",
+    Direction.IN,
+    LATCHED,
+    None,
+    bridged=_INWARD,
+)
+CONTROL = TopicEntry(
+    "control",
+    "/control/trajectory_follower/control_cmd",
+    "autoware_control_msgs/msg/Control",
+    Direction.OUT,
+    LATCHED,
+    EVERY_TICK,
+    bridged=_OUTWARD,
+)
+LATERAL_TIME = TopicEntry(
+    "lateral_processing_time",
+    "/control/trajectory_follower/lateral/debug/processing_time_ms",
+    "tier4_debug_msgs/msg/Float64Stamped",
+    Direction.OUT,
+    DEFAULT,
+    EVERY_TICK,
+)
+LONGITUDINAL_TIME = TopicEntry(
+    "longitudinal_processing_time",
+    "/control/trajectory_follower/longitudinal/debug/processing_time_ms",
+    "tier4_debug_msgs/msg/Float64Stamped",
+    Direction.OUT,
+    DEFAULT,
+    EVERY_TICK,
+)
+
+TOPICS = (
+    STEERING,
+    TRAJECTORY,
+    ODOMETRY,
+    ACCELERATION,
+    OPERATION_MODE,
+    CONTROL,
+    LATERAL_TIME,
+    LONGITUDINAL_TIME,
+)
+"""In the order of section 2 of the contract."""
+INPUTS = tuple(entry for entry in TOPICS if entry.direction is Direction.IN)
+OUTPUTS = tuple(entry for entry in TOPICS if entry.direction is Direction.OUT)
+BRIDGED = tuple(entry for entry in TOPICS if entry.bridged is not None)
+
+
+def topic(key: str) -> TopicEntry:
+    """Return the entry of a short name; KeyError when the table has none."""
+    return {entry.key: entry for entry in TOPICS}[key]
