@@ -1,9 +1,9 @@
 """The vehicle of the simulation: a kinematic bicycle behind lagging, delayed actuators.
 
 Not modelled: tyre slip, load transfer, limits of steering angle and rate, engine and brake maps,
-sensor noise. A negative acceleration command is a brake: it works against the motion, whichever way
-that is, and holds the vehicle at rest; a positive one drives along the gear, and a vehicle that drives
-too little on a slope rolls back.
+sensor noise. A negative acceleration command is a brake: it works against the motion, whichever
+way that is, and holds the vehicle at rest; a positive one drives along the gear, and a vehicle that
+drives too little on a slope rolls back.
 """
 
 from __future__ import annotations
