@@ -10,6 +10,7 @@ from importlib.metadata import version
 from typing import Any, NamedTuple
 
 from cyclonedds import _clayer
+from cyclonedds.builtin_types import cqos_to_qos
 from cyclonedds.core import Entity, InstanceState, SampleState, ViewState
 
 from safety_island.dds.errors import DdsError
@@ -18,6 +19,8 @@ PINNED_VERSION = "11.0.1"
 ANY = SampleState.Any | ViewState.Any | InstanceState.Any
 MINIMUM_WRITE = 4
 """The C layer reads a header of this many bytes without looking whether it is there."""
+
+_convert_qos: Any = cqos_to_qos
 
 RETCODE_BAD_PARAMETER = -3
 RETCODE_TIMEOUT = -10
@@ -30,6 +33,17 @@ class RawSample(NamedTuple):
     valid: bool
     source_timestamp_ns: int
     publication_handle: int
+
+
+class RawEndpoint(NamedTuple):
+    """One event of discovery: an endpoint that appeared or changed, or (not ``alive``) left."""
+
+    guid: bytes
+    participant: bytes
+    topic: str
+    type_name: str
+    qos: Any
+    alive: bool
 
 
 def check_version() -> None:
@@ -64,15 +78,29 @@ def write(writer: int, data: bytes) -> int:
     """
     if len(data) < MINIMUM_WRITE:
         return RETCODE_BAD_PARAMETER
-    surplus = len(data) & 3
-    code: int = _clayer.ddspy_write(writer, data + bytes(4 - surplus) if surplus else data)
+    code: int = _clayer.ddspy_write(writer, filled(data))
     return code
+
+
+def filled(data: bytes) -> bytes:
+    """Return the data with zeros behind, up to a multiple of four bytes."""
+    surplus = len(data) & 3
+    return data + bytes(4 - surplus) if surplus else data
 
 
 def matched_writer(reader: int, handle: int) -> bytes | None:
     """Return the GUID (16 bytes) of a writer that the reader is matched with, by its handle."""
     found = _clayer.ddspy_get_matched_publication_data(reader, handle, _key_of_endpoint, _no_qos)
     return found if isinstance(found, bytes) else None
+
+
+def take_endpoints(reader: int, limit: int) -> list[RawEndpoint]:
+    """Take up to ``limit`` events of a discovery reader, oldest first."""
+    found = _clayer.ddspy_take_endpoint(reader, limit, _endpoint, _qos_or_none)
+    if isinstance(found, int):
+        raise DdsError(f"reading discovery failed: {strerror(found)}")
+    events: list[RawEndpoint] = found
+    return events
 
 
 def delete(entity: Entity) -> None:
@@ -93,6 +121,28 @@ def strerror(code: int) -> str:
         RETCODE_TIMEOUT: "timed out",
     }
     return f"{words.get(code, 'failed')} ({code})"
+
+
+def _endpoint(
+    key: bytes,
+    participant: bytes,
+    _handle: int,
+    topic: str | None,
+    type_name: str | None,
+    qos: Any,
+    info: Any,
+    _type_id: bytes | None,
+) -> RawEndpoint:
+    alive = info.valid_data and info.instance_state == InstanceState.Alive
+    return RawEndpoint(key, participant, topic or "", type_name or "", qos, alive)
+
+
+def _qos_or_none(pointer: int) -> Any:
+    """Convert the QoS of a peer; what the library cannot convert must not stop discovery."""
+    try:
+        return _convert_qos(pointer)
+    except Exception:
+        return None
 
 
 def _key_of_endpoint(key: bytes, *_: object) -> bytes:

@@ -11,7 +11,6 @@ from cyclonedds.builtin import (
     BuiltinTopicDcpsPublication,
     BuiltinTopicDcpsSubscription,
 )
-from cyclonedds.core import InstanceState
 from cyclonedds.domain import DomainParticipant
 from cyclonedds.qos import Policy
 
@@ -65,29 +64,27 @@ class Endpoints:
 
     def _refresh(self) -> None:
         while True:
-            events: list[Any] = self._reader.take(_BATCH)
+            events = binding.take_endpoints(self._reader._ref, _BATCH)
             for event in events:
                 self._note(event)
             if len(events) < _BATCH:
                 return
 
-    def _note(self, event: Any) -> None:
-        guid = event.key.bytes
-        info = event.sample_info
-        if info.instance_state != InstanceState.Alive:
-            self._known.pop(guid, None)
-        elif info.valid_data and event.participant_key.bytes != self._own:
-            self._known[guid] = _endpoint(event)
+    def _note(self, event: binding.RawEndpoint) -> None:
+        if not event.alive:
+            self._known.pop(event.guid, None)
+        elif event.participant != self._own:
+            self._known[event.guid] = _endpoint(event)
 
 
-def _endpoint(event: Any) -> RemoteEndpoint:
+def _endpoint(event: binding.RawEndpoint) -> RemoteEndpoint:
     return RemoteEndpoint(
-        guid=event.key.bytes,
-        participant=event.participant_key.bytes,
-        topic=ros_topic_name(event.topic_name),
+        guid=event.guid,
+        participant=event.participant,
+        topic=ros_topic_name(event.topic),
         type_name=ros_type_name(event.type_name),
-        qos=from_cyclone(event.qos),
-        type_hash=_type_hash(event.qos[Policy.Userdata]),
+        qos=Qos() if event.qos is None else from_cyclone(event.qos),
+        type_hash="" if event.qos is None else _type_hash(event.qos[Policy.Userdata]),
     )
 
 

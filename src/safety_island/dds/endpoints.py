@@ -11,8 +11,9 @@ from cyclonedds.pub import DataWriter
 from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
 
-from safety_island.dds import binding
+from safety_island.dds import binding, opaque
 from safety_island.dds.errors import DdsError
+from safety_island.dds.opaque import OpaqueTopic
 from safety_island.dds.qos import Qos, cyclone_qos
 from safety_island.dds.types import type_hash_data
 
@@ -50,6 +51,7 @@ class Publisher:
         wanted = cyclone_qos(qos, type_hash_data(type_name), writer=True)
         self._writer: DataWriter[Any] = _create(DataWriter, participant, topic, wanted)
         self._ref: int = self._writer._ref
+        self._write = opaque.write if isinstance(topic, OpaqueTopic) else binding.write
         self._on_close = on_close
         self.guid: bytes = self._writer.guid.bytes
 
@@ -59,7 +61,7 @@ class Publisher:
         Never raises and never waits longer than ``qos.MAX_BLOCKING_NS``; a refusal (no CDR of this
         type, or no room in time) is counted and told in ``last_error``.
         """
-        code = binding.write(self._ref, data)
+        code = self._write(self._ref, data)
         if code < 0:
             self.failed += 1
             self.last_error = binding.strerror(code)
@@ -101,6 +103,7 @@ class Subscription:
         wanted = cyclone_qos(qos, type_hash_data(type_name), writer=False, ignore_own=ignore_own)
         self._reader: DataReader[Any] = _create(DataReader, participant, topic, wanted)
         self._ref: int = self._reader._ref
+        self._raw = opaque.take if isinstance(topic, OpaqueTopic) else binding.take
         self._writers: dict[int, bytes] = {}
         self._on_close = on_close
         self.condition = ReadCondition(self._reader, _UNREAD)
@@ -130,7 +133,7 @@ class Subscription:
 
     def _take(self) -> list[binding.RawSample]:
         samples: list[binding.RawSample] = []
-        taken = binding.take(self._ref, _BATCH)
+        taken = self._raw(self._ref, _BATCH)
         samples += [raw for raw in taken if raw.valid]
         self.invalid += len(taken) - len(samples)
         self.received += len(samples)

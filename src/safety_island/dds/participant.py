@@ -18,12 +18,14 @@ from safety_island.dds.domain import close_domain, open_domain
 from safety_island.dds.endpoints import Publisher, Subscription
 from safety_island.dds.errors import DdsError
 from safety_island.dds.names import dds_topic_name
+from safety_island.dds.opaque import OpaqueTopic
 from safety_island.dds.presence import PARTICIPANT_USER_DATA, check_node_name, presence
 from safety_island.dds.presence import QOS as PRESENCE_QOS
 from safety_island.dds.presence import TOPIC as PRESENCE_TOPIC
 from safety_island.dds.presence import TYPE as PRESENCE_TYPE
 from safety_island.dds.qos import DEFAULT, Qos
 from safety_island.dds.types import cyclone_type
+from safety_island.messages import registry
 
 DEFAULT_NODE_NAME = "safety_island"
 
@@ -132,10 +134,15 @@ class Participant:
         key = (dds_topic, type_name)
         if key not in self._topics:
             try:
-                self._topics[key] = Topic(self._participant, dds_topic, cyclone_type(type_name))
+                self._topics[key] = self._new_topic(dds_topic, type_name)
             except DDSException as problem:
                 raise DdsError(f"topic {dds_topic} of {type_name}: {problem}") from None
         return self._topics[key]
+
+    def _new_topic(self, dds_topic: str, type_name: str) -> Topic[Any]:
+        if registry.known(type_name):
+            return Topic(self._participant, dds_topic, cyclone_type(type_name))
+        return OpaqueTopic(self._participant, dds_topic, type_name)
 
     def _forget(self, endpoint: Publisher | Subscription) -> None:
         if isinstance(endpoint, Subscription):
