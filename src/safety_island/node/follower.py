@@ -1,0 +1,66 @@
+"""The trajectory follower as the node sees it: five inputs, two controllers, one command."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from safety_island.control.records import Records
+from safety_island.control.status import MpcStatus, Refusal
+
+
+class InputFollower(Protocol):
+    """The side of the trajectory follower that takes inputs; each says why it refused one."""
+
+    @property
+    def incoming(self) -> Records:
+        """Memory of POINT records that the next trajectory is decoded into."""
+
+    def offer_incoming(self, n: int, stamp: float) -> Refusal:
+        """Offer the first ``n`` points of ``incoming`` and their header stamp [s]."""
+
+    def offer_odometry(
+        self,
+        x: float,
+        y: float,
+        z: float,
+        qx: float,
+        qy: float,
+        qz: float,
+        qw: float,
+        vx: float,
+        vy: float,
+        wz: float,
+    ) -> Refusal:
+        """Offer pose [m], velocity [m/s] and yaw rate [rad/s]."""
+
+    def offer_steering(self, angle: float) -> Refusal:
+        """Offer a tyre angle [rad]."""
+
+    def offer_acceleration(self, ax: float) -> Refusal:
+        """Offer an acceleration [m/s^2]."""
+
+    def offer_operation_mode(self, mode: int, enabled: bool) -> Refusal:
+        """Offer who drives."""
+
+
+class Follower(InputFollower, Protocol):
+    """The trajectory follower, as the node sees it; ``now`` is the monotonic clock [s]."""
+
+    @property
+    def command(self) -> Records:
+        """COMMAND record, shape (1,), always the same memory; stamps on the clock of ``now``."""
+
+    def missing(self) -> tuple[str, ...]:
+        """Names of the inputs of which none was accepted yet."""
+
+    def is_ready(self) -> bool:
+        """Whether both controllers can run."""
+
+    def run_lateral(self, now: float) -> MpcStatus:
+        """Compute the steering side of the command; NO_REFERENCE leaves it alone."""
+
+    def run_longitudinal(self, now: float) -> int:
+        """Compute speed and acceleration of the command; negative when it is left alone."""
+
+    def sync(self) -> None:
+        """Hand each controller what it must know of the other at the next tick."""

@@ -1,0 +1,113 @@
+"""Topics in memory: the transport of the sim platform. The bytes are those of DDS."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from safety_island.dds.names import dds_topic_name
+from safety_island.dds.qos import Qos
+from safety_island.errors import ConfigurationError
+from safety_island.messages.registry import lookup
+from safety_island.platform.interfaces import Clock
+
+
+class MemorySample(NamedTuple):
+    """One received message."""
+
+    data: bytes
+    source_timestamp_ns: int
+    writer_guid: bytes
+
+
+class MemorySubscription:
+    """Holds the newest message until it is taken."""
+
+    def __init__(self) -> None:
+        self.received = 0
+        self.superseded = 0
+        self.invalid = 0
+        self._newest: MemorySample | None = None
+
+    def put(self, sample: MemorySample) -> None:
+        """Receive a message; one that was not taken yet is superseded."""
+        self.received += 1
+        if self._newest is not None:
+            self.superseded += 1
+        self._newest = sample
+
+    def take_newest(self) -> MemorySample | None:
+        """Return the newest message since the last call; None when there is none."""
+        sample = self._newest
+        self._newest = None
+        return sample
+
+
+class MemoryPublisher:
+    """Hands its messages to every subscription of the topic, at once and without loss."""
+
+    def __init__(self, clock: Clock, readers: list[MemorySubscription], guid: bytes) -> None:
+        self.guid = guid
+        self.failed = 0
+        self.last_error = ""
+        self.last: MemorySample | None = None
+        self._clock = clock
+        self._readers = readers
+
+    def write(self, data: bytes) -> bool:
+        """Send one message; its time stamp is the virtual wall clock. Always possible."""
+        self.last = MemorySample(data, self._clock.wall_ns(), self.guid)
+        for reader in self._readers:
+            reader.put(self.last)
+        return True
+
+
+class _Topic:
+    def __init__(self, type_name: str) -> None:
+        self.type_name = type_name
+        self.readers: list[MemorySubscription] = []
+        self.latched: list[MemoryPublisher] = []
+
+
+class MemoryDomain:
+    """The topics that a simulation shares; it is also the transport of every node in it.
+
+    Not modelled: discovery time, loss, delay, reordering, fragmentation, QoS other than
+    transient-local durability, and liveliness. (A fault campaign puts those between two topics.)
+    """
+
+    def __init__(self, clock: Clock) -> None:
+        self._clock = clock
+        self._topics: dict[str, _Topic] = {}
+        self._writers = 0
+
+    def publisher(self, topic: str, type_name: str, qos: Qos) -> MemoryPublisher:
+        """Make a publisher; a transient-local one also serves subscriptions that come later."""
+        found = self._topic(topic, type_name)
+        self._writers += 1
+        writer = MemoryPublisher(self._clock, found.readers, self._writers.to_bytes(16, "big"))
+        if qos.durability == "transient_local":
+            found.latched.append(writer)
+        return writer
+
+    def subscription(self, topic: str, type_name: str, qos: Qos) -> MemorySubscription:
+        """Make a subscription; a transient-local one starts with what was last said."""
+        found = self._topic(topic, type_name)
+        reader = MemorySubscription()
+        found.readers.append(reader)
+        if qos.durability == "transient_local":
+            for sample in [writer.last for writer in found.latched if writer.last is not None]:
+                reader.put(sample)
+        return reader
+
+    def close(self) -> None:
+        """Memory needs no leaving; others may still use the domain."""
+
+    def _topic(self, topic: str, type_name: str) -> _Topic:
+        dds_topic_name(topic)
+        found = self._topics.setdefault(topic, _Topic(lookup(type_name).name))
+        if found.type_name != type_name:
+            raise ConfigurationError(
+                f"topic '{topic}' has the type {found.type_name} in this simulation, not "
+                f"{type_name}: name the type that its other users have"
+            )
+        return found

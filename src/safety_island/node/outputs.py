@@ -1,0 +1,66 @@
+"""Where a command goes. Each output takes the same command; one that fails stops no other."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from safety_island.dds.topics import TopicEntry
+from safety_island.messages.outputs import Control, encode_control, encode_float64_stamped
+from safety_island.messages.wire import Time
+from safety_island.node.transport import Publisher
+from safety_island.platform.interfaces import Logger
+
+
+class Output(Protocol):
+    """One way for commands to leave the island."""
+
+    name: str
+    failed: int
+    """Commands that it could not take."""
+
+    def send(self, command: Control, stamp_ns: int) -> bool:
+        """Send a command with its wall-clock stamp [ns]; False when it did not go out.
+
+        Never waits longer than a tenth of a period, never raises, and counts and logs why.
+        """
+
+    def close(self) -> None:
+        """Give back what the output holds."""
+
+
+class TopicWriter:
+    """A publisher whose failures are counted and logged."""
+
+    def __init__(self, topic: TopicEntry, publisher: Publisher, logger: Logger) -> None:
+        self.name = topic.name
+        self.failed = 0
+        self._publisher = publisher
+        self._logger = logger
+
+    def write(self, data: bytes) -> bool:
+        """Send one message; False when it did not go out."""
+        if self._publisher.write(data):
+            return True
+        self.failed += 1
+        problem = self._publisher.last_error
+        self._logger.error("not sent: %s", problem, throttled=True, site=self.name)
+        return False
+
+    def close(self) -> None:
+        """The transport closes its publishers."""
+
+
+class ControlTopic(TopicWriter):
+    """Publishes ``autoware_control_msgs/msg/Control``."""
+
+    def send(self, command: Control, stamp_ns: int) -> bool:
+        """Publish a command; its stamps are in it."""
+        return self.write(encode_control(command))
+
+
+class ProcessingTime(TopicWriter):
+    """Publishes how long a controller took, as ``Float64Stamped`` in milliseconds."""
+
+    def send(self, stamp: Time, seconds: float) -> None:
+        """Publish a duration [s]; a failure is no reason to stop."""
+        self.write(encode_float64_stamped(stamp, seconds * 1e3))
