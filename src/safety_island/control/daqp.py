@@ -18,6 +18,7 @@ from safety_island.control.qp_ldl import (
     back_substitute,
     forward,
     remove_row,
+    solve_gram,
     solve_targets,
 )
 from safety_island.control.status import MpcStatus
@@ -31,6 +32,11 @@ VIOLATION = 1e-11
 
 DEPENDENT = 1e-11
 """A row is a combination of the working set when this part of its squared length is left."""
+
+ACTIVE_ERROR = 1e-13
+"""Distance of u from an active bound that is not worth a correction [rad]."""
+
+MAX_CORRECTIONS = 2
 
 ROUNDING = 1e-13
 """A multiplier of the wrong sign counts as zero below this part of the greatest one."""
@@ -115,7 +121,9 @@ def _append(q, n, k, constraint, side):
     length = append_row(q, n, k, start)
     q.qp_active[k] = constraint
     q.qp_side[k] = side if low < high else 0
-    q.qp_excess[k] = value - (high if side > 0 else low)
+    q.qp_bound[k] = high if side > 0 else low
+    q.qp_excess[k] = value - q.qp_bound[k]
+    q.qp_start[k] = start
     q.qp_multiplier[k] = 0.0
     forward(q, k, k + 1)
     return q.qp_D[k] > DEPENDENT * length
@@ -155,8 +163,10 @@ def _remove(q, k, j):
     remove_row(q, k, j)
     for t in range(j, k - 1):
         q.qp_slot[t] = q.qp_slot[t + 1]
+        q.qp_start[t] = q.qp_start[t + 1]
         q.qp_active[t] = q.qp_active[t + 1]
         q.qp_side[t] = q.qp_side[t + 1]
+        q.qp_bound[t] = q.qp_bound[t + 1]
         q.qp_excess[t] = q.qp_excess[t + 1]
         q.qp_multiplier[t] = q.qp_multiplier[t + 1]
     q.qp_slot[k - 1] = slot
@@ -166,18 +176,50 @@ def _remove(q, k, j):
 
 @kernel
 def _primal(q, n, k):
-    """Set u = free + R^-1 w with w = -M' multipliers."""
-    w = q.u
+    """Set u = free - H^-1 A' multipliers, and correct what rounding leaves at the active bounds."""
+    for i in range(n):
+        q.u[i] = q.qp_free[i]
+    _shift(q, n, k, q.qp_multiplier)
+    for _ in range(MAX_CORRECTIONS):
+        if _active_error(q, k) <= ACTIVE_ERROR:
+            break
+        solve_gram(q, q.qp_target, k)
+        _shift(q, n, k, q.qp_target)
+        for j in range(k):
+            q.qp_multiplier[j] += q.qp_target[j]
+
+
+@kernel
+def _shift(q, n, k, multipliers):
+    """Take R^-1 M' multipliers off u."""
+    w = q.qp_w
     for i in range(n):
         w[i] = 0.0
     for j in range(k):
-        row = q.qp_M[q.qp_slot[j]]
-        multiplier = q.qp_multiplier[j]
-        for i in range(n):
-            w[i] -= multiplier * row[i]
+        start = q.qp_start[j]
+        row = q.qp_M[q.qp_slot[j]][start:n]
+        part = w[start:n]
+        multiplier = multipliers[j]
+        for i in range(n - start):
+            part[i] += multiplier * row[i]
     solve_upper(q, w, n)
     for i in range(n):
-        w[i] += q.qp_free[i]
+        q.u[i] -= w[i]
+
+
+@kernel
+def _active_error(q, k):
+    """Set ``qp_target`` to how far u is above each active bound; return the greatest magnitude."""
+    worst = 0.0
+    for j in range(k):
+        constraint = q.qp_active[j]
+        i = constraint % MAX_HORIZON
+        error = q.u[i] - q.qp_bound[j]
+        if constraint > MAX_HORIZON:
+            error -= q.u[i - 1]
+        q.qp_target[j] = error
+        worst = max(worst, abs(error))
+    return worst
 
 
 @kernel

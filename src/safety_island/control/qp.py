@@ -6,8 +6,8 @@ Fill ``H``, ``f`` and the four bounds of a record with ``QP_COLUMNS`` (see ``qp_
 
 from safety_island.control.cholesky import factorize, solve_unconstrained
 from safety_island.control.daqp import INFEASIBLE, SOLVED, VIOLATION, solve_dual
-from safety_island.control.kernel import entry, kernel
-from safety_island.control.qp_check import check_solution
+from safety_island.control.kernel import kernel
+from safety_island.control.qp_check import check_solution, check_unconstrained
 from safety_island.control.qp_records import QP, QP_COLUMNS
 
 __all__ = [
@@ -15,10 +15,10 @@ __all__ = [
     "QP",
     "QP_COLUMNS",
     "check_solution",
+    "check_unconstrained",
     "factorize",
     "forget_active_set",
     "solve_constrained",
-    "solve_problem",
     "solve_unconstrained",
 ]
 
@@ -34,7 +34,7 @@ def solve_constrained(q, n, max_iterations):
     first guess of the next; they change the way to the solution, not the solution.
     """
     q.qp_iterations = 0
-    if not _bounds_in_order(q, n):
+    if not _feasible(q, n):
         forget_active_set(q)
         return INFEASIBLE
     solve_unconstrained(q, n)
@@ -53,12 +53,20 @@ def forget_active_set(q):
 
 
 @kernel
-def _bounds_in_order(q, n):
-    """Whether no lower bound is above its upper bound (a NaN is not in order either)."""
+def _feasible(q, n):
+    """Whether a u inside all bounds exists: the interval that u_i can reach, step by step.
+
+    Exact, because each row touches one or two neighbours. NaN in a bound is infeasible too.
+    """
+    low = 0.0
+    high = 0.0
+    feasible = True
     for i in range(n):
-        if not (q.lb[i] <= q.ub[i] and q.lbA[i] <= q.ubA[i]):
-            return False
-    return True
+        feasible = feasible and q.lb[i] <= q.ub[i] and q.lbA[i] <= q.ubA[i]
+        low = max(low + q.lbA[i], q.lb[i])
+        high = min(high + q.ubA[i], q.ub[i])
+        feasible = feasible and low <= high + VIOLATION
+    return feasible
 
 
 @kernel
@@ -74,15 +82,3 @@ def _inside(q, n):
             return False
         before = value
     return True
-
-
-@entry(QP, int, int)
-def solve_problem(qp, n, max_iterations):
-    """Factorize, solve with all constraints and check a problem that stands alone."""
-    q = qp[0]
-    status = factorize(q, n)
-    if status == SOLVED:
-        status = solve_constrained(q, n, max_iterations)
-    if status == SOLVED:
-        status = check_solution(q, n)
-    return status

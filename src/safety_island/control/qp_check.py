@@ -25,7 +25,7 @@ SOLUTION_NOT_OPTIMAL = int(MpcStatus.SOLUTION_NOT_OPTIMAL)
 MAX_VIOLATION = 1e-9
 """A bound may be exceeded by this; nearer than this it counts as touched [rad]."""
 
-MAX_RESIDUAL = 1e-6
+MAX_RESIDUAL = 1e-8
 """Residual of the optimality conditions over the greatest term of the gradient."""
 
 
@@ -45,7 +45,7 @@ def check_solution(q, n):
         return SOLUTION_VIOLATES
     scale = _gradient(q, n)
     gap = _chain_gap(q, n)
-    q.qp_residual = gap / scale if scale > 0.0 else gap
+    q.qp_residual = gap if scale == 0.0 else gap / scale
     return SOLVED if q.qp_residual <= MAX_RESIDUAL else SOLUTION_NOT_OPTIMAL
 
 
@@ -61,14 +61,14 @@ def check_unconstrained(q, n):
     gap = 0.0
     for i in range(n):
         gap = _greater(gap, abs(q.qp_v[i]))
-    q.qp_residual = gap / scale if scale > 0.0 else gap
+    q.qp_residual = gap if scale == 0.0 else gap / scale
     return SOLVED if q.qp_residual <= MAX_RESIDUAL else SOLUTION_NOT_OPTIMAL
 
 
 @kernel
 def _greater(a, b):
-    """The greater of two numbers, NaN when ``b`` is NaN."""
-    return a if a >= b else b
+    """The greater of two numbers, NaN when one is NaN."""
+    return a if a >= b or a != a else b
 
 
 @kernel

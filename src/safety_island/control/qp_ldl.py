@@ -77,6 +77,16 @@ def solve_targets(q, k):
 
 
 @kernel
+def solve_gram(q, x, k):
+    """Solve L D L'y = x in place."""
+    for j in range(k):
+        x[j] -= dot(q.qp_L[j], x, j)
+    for j in range(k):
+        x[j] /= q.qp_D[j]
+    back_substitute(q, x, k)
+
+
+@kernel
 def back_substitute(q, x, k):
     """Solve L'y = x in place."""
     for back in range(k):

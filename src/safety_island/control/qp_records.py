@@ -32,12 +32,14 @@ QP_COLUMNS: list[Any] = [
     ("qp_inverse", "f8", (_N,)),  # 1 / diag(R)
     ("qp_v", "f8", (_N,)),  # R^-T f; check_solution: the gradient H u + f
     ("qp_free", "f8", (_N,)),  # the unconstrained minimiser
+    ("qp_w", "f8", (_N,)),  # a step of u, through the factor
     ("qp_M", "f8", (_SET, _N)),  # rows R^-T a of the working set, by slot
     ("qp_slot", "i8", (_SET,)),  # position in the working set -> row of qp_M; a permutation
     ("qp_start", "i8", (_SET,)),  # that row of qp_M is zero before this column, by position
     ("qp_active", "i8", (_SET,)),  # working set: constraint number
     ("qp_side", "i8", (_SET,)),  # +1 upper bound, -1 lower bound, 0 both (equality)
     ("qp_in_set", "i8", (2 * _N,)),  # 1 for the constraints of the working set
+    ("qp_bound", "f8", (_SET,)),  # what the constraint is held at [rad]
     ("qp_excess", "f8", (_SET,)),  # a'free - bound
     ("qp_multiplier", "f8", (_SET,)),  # negative on a lower bound
     ("qp_target", "f8", (_SET,)),  # multipliers that the present working set asks for
