@@ -153,7 +153,7 @@ class LateralParams:
         "1/m", "Curvature below which the path counts as straight; 0: never.", 0.0, 10.0
     )
     mpc_zero_ff_steer_deg: float = parameter(
-        "deg", "Feed-forward angle below which it is taken as nought.", 0.0, 90.0
+        "deg", "Feed-forward angle below which it is taken as 0.", 0.0, 90.0
     )
     mpc_acceleration_limit: float = parameter(
         "m/s^2", "Limit of the velocity filter on the reference.", 0.01, 20.0

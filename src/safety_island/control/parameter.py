@@ -30,7 +30,7 @@ def switch(doc: str, *, key: str | None = None) -> Any:
 
 
 def weight(doc: str) -> Any:
-    """Declare a weight of the MPC's cost; nought leaves its term out."""
+    """Declare a weight of the MPC's cost; 0 leaves its term out."""
     return parameter("", doc, 0.0, 1e6)
 
 

@@ -14,12 +14,10 @@ Values = Mapping[str, Any]
 
 @dataclass(frozen=True)
 class Rule:
-    """A condition on some keys: ``check`` returns what is wrong, or None.
-
-    The keys stand in the order in which they are named when a file gives several.
-    """
+    """A condition on some keys: ``check`` returns what is wrong, or None; ``doc`` says it."""
 
     keys: tuple[str, ...]
+    doc: str
     check: Callable[[Values], str | None]
 
 
@@ -68,7 +66,7 @@ def _ordered(low: str, high: str) -> Rule:
             return None
         return f"found {low} {values[low]:g} above {high} {values[high]:g}; expected at most that"
 
-    return Rule((low, high), check)
+    return Rule((low, high), f"`{low}` is at most `{high}`", check)
 
 
 def _same_length(at: str, table: str) -> Rule:
@@ -78,7 +76,7 @@ def _same_length(at: str, table: str) -> Rule:
         sizes = f"{len(values[at])} entries in {at} and {len(values[table])} in {table}"
         return f"found {sizes}; expected as many in both"
 
-    return Rule((at, table), check)
+    return Rule((at, table), f"`{at}` and `{table}` are of one length", check)
 
 
 def _ascending(at: str) -> Rule:
@@ -88,7 +86,7 @@ def _ascending(at: str) -> Rule:
             return None
         return f"found {list(numbers)}; expected each entry above the one before it"
 
-    return Rule((at,), check)
+    return Rule((at,), f"`{at}` ascends", check)
 
 
 def above_nyquist(cutoff: str, values: Values) -> bool:
@@ -97,7 +95,7 @@ def above_nyquist(cutoff: str, values: Values) -> bool:
     The filter of the error rates is in use with the dynamics model only.
     """
     used = cutoff == "steering_lpf_cutoff_hz" or values["vehicle_model_type"] == "dynamics"
-    return bool(used and values[cutoff] >= nyquist_hz(values["ctrl_period"]))
+    return bool(used and values[cutoff] * 2.0 * values["ctrl_period"] >= 1.0)
 
 
 def _below_nyquist(cutoff: str) -> Rule:
@@ -112,7 +110,7 @@ def _below_nyquist(cutoff: str) -> Rule:
         )
 
     keys = (cutoff, "ctrl_period", "vehicle_model_type", "pass_filters_above_nyquist")
-    return Rule(keys, check)
+    return Rule(keys, f"`{cutoff}` is below 1/(2 `ctrl_period`), where its filter is in use", check)
 
 
 def _span(time: str, steps: int) -> Rule:
@@ -125,7 +123,7 @@ def _span(time: str, steps: int) -> Rule:
             f" expected at most {steps} periods, {steps * period:g} s"
         )
 
-    return Rule((time, "ctrl_period"), check)
+    return Rule((time, "ctrl_period"), f"`{time}` is at most {steps} periods", check)
 
 
 def _loaded(key: str) -> Rule:
@@ -134,7 +132,7 @@ def _loaded(key: str) -> Rule:
             return None
         return f"found {key} {values[key]:g}; expected above 0 for vehicle_model_type dynamics"
 
-    return Rule((key, "vehicle_model_type"), check)
+    return Rule((key, "vehicle_model_type"), f"`{key}` is above 0 for the dynamics model", check)
 
 
 def _stop_distances(values: Values) -> str | None:
@@ -157,7 +155,7 @@ RULES: tuple[Rule, ...] = (
     *(_below_nyquist(cutoff) for cutoff in FILTERS),
     *(_span(time, steps) for time, steps in SPANS),
     *(_loaded(key) for key in DYNAMICS),
-    Rule(_STOP, _stop_distances),
+    Rule(_STOP, f"`{_STOP[0]}` is at most `{_STOP[1]}` + `{_STOP[2]}`", _stop_distances),
 )
 
 

@@ -15,10 +15,9 @@ from safety_island.params.no_effect import NoEffect, no_effect
 from safety_island.params.problem import Place, Problem
 from safety_island.params.scalars import found, shown
 from safety_island.params.schema import KNOWN
-from safety_island.params.tree import Entry, Source, entries, value_of_text
-
-MAX_FILE_BYTES = 1 << 20
-"""A parameter file has a few kB; a file beyond this is not one."""
+from safety_island.params.sets import file_of_key
+from safety_island.params.source import Source, read_source
+from safety_island.params.tree import Entry, parse, value_of_text
 
 
 @dataclass(frozen=True)
@@ -47,18 +46,17 @@ class Layers:
 
     def add_file(self, path: Path) -> None:
         """Lay a file of the user over what is there."""
-        try:
-            text = _text(path)
-        except (OSError, UnicodeDecodeError, ValueError) as error:
-            why = getattr(error, "strerror", None) or str(error)
-            text_ = f"cannot be read: {why}; expected a YAML file of parameters"
-            self.problems.append(Problem(Place(str(path)), "", text_))
+        source = read_source(path)
+        if isinstance(source, Problem):
+            self.problems.append(source)
         else:
-            self.add_source(Source(str(path), text))
+            self.add_source(source)
 
     def add_source(self, source: Source) -> None:
         """Lay the text of a file over what is there."""
-        self.add_entries(entries(source, self.problems))
+        parsed = parse(source)
+        self.problems += parsed.problems
+        self.add_entries(parsed.entries)
 
     def add_mapping(self, overrides: Mapping[str, object], name: str) -> None:
         """Lay values by key over what is there; a text is read as a file would."""
@@ -129,25 +127,13 @@ class Layers:
         return max(rule.keys, key=lambda key: self.depth[key])
 
     def _missing(self, key: str) -> Problem:
-        """A missing key is told at the section that holds its nearest neighbour."""
-        order = [other for other in KNOWN if KNOWN[other].group == KNOWN[key].group]
-        at = order.index(key)
-        given = [other for other in order if other in self.origins]
+        """A missing key is told at the section that holds the others of its file."""
+        home = file_of_key()
         text = f"is missing; expected {KNOWN[key].allowed_text}"
-        if not given:
-            return Problem(Place(f"no file with {KNOWN[key].group} parameters"), key, text)
-        neighbour = min(given, key=lambda other: abs(order.index(other) - at))
-        return Problem(self.origins[neighbour].section, key, text)
-
-
-def _text(path: Path) -> str:
-    if path.is_dir():
-        raise IsADirectoryError(None, "Is a directory")
-    with path.open("rb") as stream:
-        data = stream.read(MAX_FILE_BYTES + 1)
-    if len(data) > MAX_FILE_BYTES:
-        raise ValueError(f"has more than {MAX_FILE_BYTES} bytes")
-    return data.decode("utf-8")
+        for other, entry in self.origins.items():
+            if home.get(other) == home.get(key):
+                return Problem(entry.section, key, text)
+        return Problem(Place(f"no {home.get(key)}"), key, text)
 
 
 def _flat(overrides: Mapping[str, object], prefix: str = "") -> Iterator[tuple[str, object]]:

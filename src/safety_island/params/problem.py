@@ -21,16 +21,18 @@ class Place:
 
 @dataclass(frozen=True)
 class Problem:
-    """One mistake: where, at which key (may be empty), what was found and what is allowed."""
+    """One mistake: where, at which key (may be empty), what was found and what is allowed.
+
+    As a text it is one line, whatever the file holds.
+    """
 
     place: Place
     key: str
     text: str
 
     def __str__(self) -> str:
-        return (
-            f"{self.place}: {self.key}: {self.text}" if self.key else f"{self.place}: {self.text}"
-        )
+        key = f"{self.key}: " if self.key else ""
+        return " ".join(f"{self.place}: {key}{self.text}".split())
 
 
 class ParameterError(ConfigurationError):

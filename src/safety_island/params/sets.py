@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from functools import cache
 from importlib.resources import files
 
 from safety_island.errors import ConfigurationError
 from safety_island.params.convert import nearest
-from safety_island.params.tree import Source
+from safety_island.params.source import Source
+from safety_island.params.tree import parse
 
 SETS = ("firmware", "autoware-0.40", "default")
 """Names of the shipped sets."""
@@ -21,7 +23,8 @@ FILES = (
 """Files of a set, below its folder."""
 
 
-def sources_of(name: str) -> list[Source]:
+@cache
+def sources_of(name: str) -> tuple[Source, ...]:
     """Return the files of a shipped set; raise ConfigurationError when there is none."""
     if name not in SETS:
         near = nearest(name, SETS)
@@ -30,7 +33,14 @@ def sources_of(name: str) -> list[Source]:
             f"parameter set {name!r} is not shipped; expected one of {', '.join(SETS)}{hint}"
         )
     folder = files(__package__) / "sets" / name
-    return [
+    return tuple(
         Source(f"{name}/{file}", folder.joinpath(*file.split("/")).read_text("utf-8"))
         for file in FILES
-    ]
+    )
+
+
+@cache
+def file_of_key() -> dict[str, str]:
+    """Return YAML key -> the file of FILES that holds it in every shipped set."""
+    sources = zip(FILES, sources_of("default"), strict=True)
+    return {entry.key: file for file, source in sources for entry in parse(source).entries}

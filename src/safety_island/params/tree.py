@@ -4,22 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import yaml
 
 from safety_island.params.problem import Place, Problem
 from safety_island.params.scalars import interpret
+from safety_island.params.source import Source
 
 _SECTION = "ros__parameters"
 
-
-@dataclass(frozen=True)
-class Source:
-    """The text of one file, and the name under which errors speak of it."""
-
-    name: str
-    text: str
+MAX_DEPTH = 20
+"""Levels of maps and lists in a file; real ones have four."""
 
 
 @dataclass(frozen=True)
@@ -32,34 +29,51 @@ class Entry:
     section: Place
 
 
+@dataclass(frozen=True)
+class Parsed:
+    """What stands in one file, and what is wrong with it."""
+
+    entries: tuple[Entry, ...]
+    problems: tuple[Problem, ...]
+
+
 class _Loader(yaml.SafeLoader):
     """Composes nodes; refuses what ROS 2 refuses too: anchors, aliases and tags."""
 
+    depth = 0
+
     def compose_node(self, parent: Any, index: Any) -> Any:
         event = self.peek_event()  # type: ignore[no-untyped-call]
-        if isinstance(event, yaml.AliasEvent) or getattr(event, "anchor", None) is not None:
-            raise yaml.MarkedYAMLError(problem="anchors and aliases", problem_mark=event.start_mark)
-        if getattr(event, "tag", None) is not None:
-            raise yaml.MarkedYAMLError(problem="tags", problem_mark=event.start_mark)
-        return super().compose_node(parent, index)
+        aliased = isinstance(event, yaml.AliasEvent) or getattr(event, "anchor", None) is not None
+        for wrong, what in (
+            (aliased, "found an anchor or alias"),
+            (getattr(event, "tag", None) is not None, "found a tag"),
+            (self.depth > MAX_DEPTH, f"found more than {MAX_DEPTH} levels"),
+        ):
+            if wrong:
+                raise yaml.MarkedYAMLError(problem=what, problem_mark=event.start_mark)
+        self.depth += 1
+        node = super().compose_node(parent, index)
+        self.depth -= 1
+        return node
 
 
-def entries(source: Source, problems: list[Problem]) -> list[Entry]:
-    """Return every key of a file in order, nested maps joined with dots; append what is wrong."""
+@lru_cache(maxsize=64)
+def parse(source: Source) -> Parsed:
+    """Return every key of a file in order, nested maps joined with dots, and what is wrong.
+
+    The answer is kept: the files of the shipped sets are asked for again and again.
+    """
     try:
         root = _compose(source.text)
     except yaml.YAMLError as error:
-        problems.append(_syntax(source, error))
-        return []
-    except RecursionError:
-        problems.append(Problem(Place(source.name), "", "found YAML that is nested too deeply"))
-        return []
-    before = len(problems)
-    result = list(_sections(root, source.name, problems))
-    if not result and len(problems) == before:
+        return Parsed((), (_syntax(source, error),))
+    problems: list[Problem] = []
+    entries = tuple(_sections(root, source.name, problems))
+    if not entries and not problems:
         text = f"found no parameter; expected a section '/**:' with '{_SECTION}:' and keys in it"
         problems.append(Problem(Place(source.name), "", text))
-    return result
+    return Parsed(entries, tuple(problems))
 
 
 def value_of_text(text: str) -> object:
@@ -91,15 +105,16 @@ def _sections(node: Any, name: str, problems: list[Problem]) -> Iterator[Entry]:
         return
     for key, child in node.value:
         place = Place(name, key.start_mark.line + 1)
-        if key.value == _SECTION and isinstance(child, yaml.MappingNode):
+        word = key.value if isinstance(key, yaml.ScalarNode) else ""
+        if word == _SECTION and isinstance(child, yaml.MappingNode):
             yield from _flat(child, "", name, place, problems)
-        elif isinstance(child, yaml.MappingNode) and isinstance(key, yaml.ScalarNode):
+        elif word and isinstance(child, yaml.MappingNode):
             yield from _sections(child, name, problems)
+        elif word == _SECTION:
+            problems.append(Problem(place, word, "has no keys; expected a map of parameters"))
         else:
             text = f"stands where a node's name is expected; put it under '/**:', '{_SECTION}:'"
-            if key.value == _SECTION:
-                text = "has no keys; expected a map of parameters"
-            problems.append(Problem(place, str(key.value), text))
+            problems.append(Problem(place, word, text))
 
 
 def _flat(

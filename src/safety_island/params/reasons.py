@@ -1,0 +1,38 @@
+"""Why a value of our default set is what it is, where the sets differ."""
+
+REASONS = {
+    "ctrl_period": "the firmware's; Autoware's needs `--period 0.03`",
+    "ego_nearest_dist_threshold": (
+        "Autoware's; with 0 the search is global and jumps where a path crosses itself"
+    ),
+    "ego_nearest_yaw_threshold": "Autoware's; the same",
+    "qp_solver_type": "exact, and holds the limits of angle and rate that the firmware's ignores",
+    "input_delay": (
+        "the firmware's; the demo's vehicle has 0.06 s of dead time, less than half a period, and"
+        " `vehicle_model_steer_tau` covers it together with its lag of 0.2 s"
+    ),
+    "steering_offset.enable_auto_steering_offset_removal": (
+        "the firmware's; for a vehicle whose steering sensor is off centre, switch it on"
+    ),
+    "steering_lpf_cutoff_hz": (
+        "Autoware's; 10 Hz cannot act at 0.15 s. At 0.15 s 3 Hz smooths little, at 0.03 s it is the"
+        " filter that Autoware runs"
+    ),
+    "error_deriv_lpf_cutoff_hz": "as the other filter: below 3.33 Hz, which Autoware's 5 Hz is not",
+    "vehicle.mass_fl": "Autoware's, so that the dynamics model can be chosen",
+    "vehicle.mass_fr": "the same",
+    "vehicle.mass_rl": "the same",
+    "vehicle.mass_rr": "the same",
+    "vehicle.cf": "the same",
+    "vehicle.cr": "the same",
+    "symmetric_steer_rate_limits": (
+        "looked up with the sign, right curves and reverse always get the first entry of a table"
+    ),
+    "pass_filters_above_nyquist": "a cutoff that cannot act is a mistake",
+    "delay_compensation_time": "the firmware's, and that of the controller's own package",
+    "correct_reverse_signs": (
+        "in reverse the firmware has the sign wrong in the acceleration feedback and in the slope"
+        " term that comes from the trajectory's pitch"
+    ),
+}
+"""YAML key -> reason, for every key in which two of the shipped sets differ."""
