@@ -73,8 +73,13 @@ def load_run(path: Path) -> Run:
 
 
 def run_paths(pattern: str = "*/*.npz") -> list[Path]:
-    """Every recorded run, without the benchmark run (which holds six output columns only)."""
+    """Every recorded run, without the benchmark runs."""
     return sorted(path for path in DATA.glob(pattern) if path.parent.name != "bench")
+
+
+def bench_paths() -> list[Path]:
+    """The benchmark runs; they hold the first six output columns only."""
+    return sorted(DATA.glob("bench/*.npz"))
 
 
 def parameters_of(run: Run, base_yaml: Path = BASE_YAML) -> Parameters:

@@ -14,6 +14,7 @@ from safety_island.control.longitudinal_history import store_command, store_spee
 from safety_island.control.longitudinal_machine import advance_state
 from safety_island.control.longitudinal_state import LONGITUDINAL_STATE
 from safety_island.control.longitudinal_target import (
+    find_pose,
     is_far,
     locate_ego,
     locate_target,
@@ -60,8 +61,10 @@ def clear_flags(t):
 
 
 @kernel
-def far_tick(p, s, t):
+def far_tick(p, s, work, t):
     """Emergency command while the ego is far from its trajectory; only coming near ends it."""
+    s.nearest = find_pose(p, work, s.n, s.ego_point)
+    set_stop_distance(s, work)
     if p.enable_large_tracking_error_emergency:
         s.state = EMERGENCY
     emergency_command(p, s, t)
@@ -108,19 +111,18 @@ def tell(s, t):
     t.prev_acc = s.prev_acc
 
 
-@entry(PARAMS, POINT, INPUTS, LONGITUDINAL_STATE, POINT, COMMAND, TRACE, float)
-def longitudinal_step(params, points, inputs, state, work, command, trace, now):
+@kernel
+def longitudinal_tick(params, points, inputs, state, work, command, trace, now):
     """One tick: write velocity, acceleration and longitudinal_stamp of ``command``, and ``trace``.
 
     ``points[:n_points]`` is the trajectory in force, ``work`` POINT memory of LIST_CAPACITY,
     ``now`` [s]. ``state[0].is_steer_converged`` is the lateral side's of the previous tick.
-    Returns the LongitudinalState, or a LongitudinalSkip (< 0) that leaves state and command alone.
+    Returns the LongitudinalState, or a LongitudinalSkip (< 0) that leaves memories and command.
     """
     p = params[0]
     u = inputs[0]
     s = state[0]
     t = trace[0]
-    c = command[0]
     clear_flags(t)
     if not is_usable(u, now):
         return NOT_USABLE
@@ -130,13 +132,18 @@ def longitudinal_step(params, points, inputs, state, work, command, trace, now):
     s.dt = period_since(p, s, now)
     s.under_control = u.enabled and u.mode == AUTONOMOUS
     if is_far(p, u, s, t):
-        set_stop_distance(s, work)
-        velocity = far_tick(p, s, t)
+        velocity = far_tick(p, s, work, t)
     else:
         velocity = near_tick(p, u, s, work, segment, now, t)
     store_speed(p, s, u.vx, now)
     tell(s, t)
-    c.velocity = np.float32(velocity)
-    c.acceleration = np.float32(s.prev_acc)
-    c.longitudinal_stamp = now
+    command[0].velocity = np.float32(velocity)
+    command[0].acceleration = np.float32(s.prev_acc)
+    command[0].longitudinal_stamp = now
     return s.state
+
+
+@entry(PARAMS, POINT, INPUTS, LONGITUDINAL_STATE, POINT, COMMAND, TRACE, float)
+def longitudinal_step(params, points, inputs, state, work, command, trace, now):
+    """The tick on its own, callable from outside; see ``longitudinal_tick``."""
+    return longitudinal_tick(params, points, inputs, state, work, command, trace, now)

@@ -74,7 +74,7 @@ def is_far(p, u, s, t):
 
 @kernel
 def set_stop_distance(s, work):
-    """Distance from the ego's point to the stop point; 0 when coordinates are beyond reckoning."""
+    """Distance from the ego's point to the stop point; 0 where coordinates are beyond reckoning."""
     s.stop_dist = stop_distance(work, s.n, s.nearest)
     if not math.isfinite(s.stop_dist):
         s.stop_dist = 0.0
@@ -89,9 +89,7 @@ def locate_ego(p, u, s, points, work):
     s.n = copy_distinct(points, u.n_points, work)
     if s.n < 2:
         return -1
-    segment = insert_projection(p, s, work, u, s.ego_point)
-    s.nearest = find_pose(p, work, s.n, s.ego_point)
-    return segment
+    return insert_projection(p, s, work, u, s.ego_point)
 
 
 @kernel
@@ -102,13 +100,12 @@ def locate_target(p, u, s, work, segment, now):
     it stands on the point before.
     """
     predict_after_delay(p, u, s, now)
-    if s.pred_dist <= MIN_RUN:
-        s.target = s.nearest
-        return
-    pose_ahead(work, s.n, segment + 1, s.pred_dist, s.target_point)
-    insert_projection(p, s, work, s.target_point, s.target_point)
+    moves = s.pred_dist > MIN_RUN
+    if moves:
+        pose_ahead(work, s.n, segment + 1, s.pred_dist, s.target_point)
+        insert_projection(p, s, work, s.target_point, s.target_point)
     s.nearest = find_pose(p, work, s.n, s.ego_point)
-    s.target = find_pose(p, work, s.n, s.target_point)
+    s.target = find_pose(p, work, s.n, s.target_point) if moves else s.nearest
 
 
 @kernel

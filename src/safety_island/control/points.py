@@ -9,47 +9,60 @@ from safety_island.control.kernel import kernel
 
 
 @kernel
-def nearest_index(points, n, x, y, yaw, dist_limit, yaw_limit):
-    """Nearest point with soft limits: both, else the distance alone, else the global nearest.
-
-    Under a limit only the first run of points inside it counts; of equals the first. ``x``, ``y``
-    [m], ``yaw`` [rad]; limits [m], [rad]. One walk does all three searches.
-    Autoware: findFirstNearestIndexWithSoftConstraints.
-    """
-    limit = dist_limit * dist_limit
-    inside = -1
-    inside_squared = math.inf
-    near = -1
-    near_squared = math.inf
-    near_open = True
-    nearest = 0
-    nearest_squared = math.inf
+def _global_nearest(points, n, x, y):
+    """Nearest point and its squared distance; of equals the first."""
+    best = 0
+    best_squared = math.inf
     for i in range(n):
         point = points[i]
         dx = point.x - x
         dy = point.y - y
         squared = dx * dx + dy * dy
-        if squared < nearest_squared:
-            nearest_squared = squared
-            nearest = i
-        if squared <= limit:
-            if near_open and squared < near_squared:
-                near_squared = squared
-                near = i
+        if squared < best_squared:
+            best_squared = squared
+            best = i
+    return best, best_squared
+
+
+@kernel
+def _nearest_within(points, n, x, y, yaw, limit_squared, yaw_limit):
+    """Nearest point of the first run of points within both limits; -1 when there is none."""
+    best = -1
+    best_squared = math.inf
+    for i in range(n):
+        point = points[i]
+        dx = point.x - x
+        dy = point.y - y
+        squared = dx * dx + dy * dy
+        inside = squared <= limit_squared
+        if inside and yaw_limit < math.inf:
             own = yaw_of(point.qx, point.qy, point.qz, point.qw)
-            if abs(normalize_angle(own - yaw)) <= yaw_limit:
-                if squared < inside_squared:
-                    inside_squared = squared
-                    inside = i
-            elif inside >= 0:
-                break
-        elif inside >= 0:
+            inside = abs(normalize_angle(own - yaw)) <= yaw_limit
+        if inside:
+            if squared < best_squared:
+                best_squared = squared
+                best = i
+        elif best >= 0:
             break
-        elif near >= 0:
-            near_open = False
-    if inside >= 0:
-        return inside
-    return near if near >= 0 else nearest
+    return best
+
+
+@kernel
+def nearest_index(points, n, x, y, yaw, dist_limit, yaw_limit):
+    """Nearest point with soft limits: both, else the distance alone, else the global nearest.
+
+    Under a limit only the first run of points inside it counts; of equals the first. ``x``, ``y``
+    [m], ``yaw`` [rad]; limits [m], [rad]. When even the global nearest is beyond the distance limit
+    it is the answer. Autoware: findFirstNearestIndexWithSoftConstraints.
+    """
+    nearest, squared = _global_nearest(points, n, x, y)
+    limit_squared = dist_limit * dist_limit
+    if squared > limit_squared:
+        return nearest
+    best = _nearest_within(points, n, x, y, yaw, limit_squared, yaw_limit)
+    if best < 0:
+        best = _nearest_within(points, n, x, y, yaw, limit_squared, math.inf)
+    return best if best >= 0 else nearest
 
 
 @kernel
@@ -102,10 +115,12 @@ def overlaps(a, b):
 def copy_distinct(points, n, target):
     """Copy points into ``target`` without those that overlap the one before; return how many."""
     count = 0
+    last = -1
     for i in range(n):
-        if count == 0 or not overlaps(points[i], target[count - 1]):
+        if last < 0 or not overlaps(points[i], points[last]):
             target[count] = points[i]
             count += 1
+            last = i
     return count
 
 
