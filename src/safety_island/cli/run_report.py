@@ -1,0 +1,141 @@
+"""What ``island run`` tells of itself: a few lines for a person, or every tick as a JSON line."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Protocol
+
+from safety_island.cli.jsonlines import JsonLines
+from safety_island.control.records import Records
+from safety_island.control.status import LongitudinalState, MpcStatus
+from safety_island.node import Outcome, TickReport
+from safety_island.node.inputs import INPUTS
+from safety_island.platform import Logger
+
+INPUT_NAMES = tuple(spec.name for spec in INPUTS)
+TICK_TIMES = 100_000
+"""How many of the newest tick times the summary looks at."""
+
+
+class Traced(Protocol):
+    """What a report reads of the trajectory follower."""
+
+    @property
+    def trace(self) -> Records:
+        """TRACE record, shape (1,)."""
+
+
+class RunReport:
+    """An observer of the controller node.
+
+    ``lines`` None: only the first command and the summary, through the logger.
+    """
+
+    def __init__(
+        self,
+        follower: Traced,
+        logger: Logger,
+        since_start: Callable[[], float],
+        lines: JsonLines | None,
+    ) -> None:
+        self.published = self.skipped = self.ticks = self.refused = 0
+        self.first_control_s: float | None = None
+        self._follower = follower
+        self._logger = logger
+        self._since_start = since_start
+        self._lines = lines
+        self._max_lateness_s = 0.0
+        self._times: list[float] = []
+
+    def __call__(self, report: TickReport) -> None:
+        """Take one tick."""
+        self.ticks += 1
+        self.skipped += report.skipped
+        self.refused += report.refused
+        self._max_lateness_s = max(self._max_lateness_s, report.lateness_s)
+        if report.published:
+            self._take_published(report)
+        if self._lines is not None:
+            self._lines.write("tick", tick_values(report, self._follower.trace))
+
+    def _take_published(self, report: TickReport) -> None:
+        self.published += 1
+        if len(self._times) < TICK_TIMES:
+            self._times.append(report.tick_time_s)
+        else:
+            self._times[self.published % TICK_TIMES] = report.tick_time_s
+        if self.first_control_s is None:
+            self.first_control_s = self._since_start()
+            self._logger.info(
+                "first Control sent %.2f s after the start of the process", self.first_control_s
+            )
+            if self._lines is not None:
+                self._lines.write("first_control", {"after_s": self.first_control_s})
+
+    def summary(self) -> dict[str, Any]:
+        """Return the figures of the whole run; times in seconds."""
+        ordered = sorted(self._times)
+        return {
+            "ticks": self.ticks,
+            "published": self.published,
+            "missed_ticks": self.skipped,
+            "refused_samples": self.refused,
+            "first_control_s": self.first_control_s,
+            "max_lateness_s": self._max_lateness_s,
+            "tick_s": {
+                "median": percentile(ordered, 50),
+                "p99": percentile(ordered, 99),
+                "max": percentile(ordered, 100),
+            },
+        }
+
+    def finish(self) -> None:
+        """Tell the summary."""
+        figures = self.summary()
+        if self._lines is not None:
+            self._lines.write("summary", figures)
+        median_s = figures["tick_s"]["median"]
+        median = "" if median_s is None else f", tick {median_s * 1e3:.2f} ms at the median"
+        self._logger.info(
+            "%d ticks, %d commands, %d ticks missed%s",
+            self.ticks,
+            self.published,
+            self.skipped,
+            median,
+        )
+
+
+def percentile(ordered: list[float], percent: float) -> float | None:
+    """Return the nearest-rank percentile of sorted values; None when there is none."""
+    if not ordered:
+        return None
+    rank = -(-len(ordered) * percent // 100)
+    return ordered[max(int(rank), 1) - 1]
+
+
+def tick_values(report: TickReport, trace: Records) -> dict[str, Any]:
+    """Return one tick as named values; lengths in m, angles in rad, times in s."""
+    values: dict[str, Any] = {
+        "number": report.number,
+        "outcome": report.outcome.name,
+        "detail": report.detail,
+        "lateness_s": report.lateness_s,
+        "skipped": report.skipped,
+        "tick_s": report.tick_time_s,
+        "ages_s": dict(zip(INPUT_NAMES, report.ages_s, strict=True)),
+        "refused": report.refused,
+    }
+    command = report.command
+    if command is not None and report.outcome is Outcome.PUBLISHED:
+        row = trace[0]
+        values |= {
+            "steering_tire_angle": command.steering_tire_angle,
+            "steering_tire_rotation_rate": command.steering_tire_rotation_rate,
+            "velocity": command.velocity,
+            "acceleration": command.acceleration,
+            "state": LongitudinalState(row["lon_state"]).name,
+            "mpc": MpcStatus(row["mpc_status"]).name,
+            "lateral_error": float(row["lateral_error"]),
+            "stop_dist": float(row["stop_dist"]),
+        }
+    return values
