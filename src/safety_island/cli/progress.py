@@ -6,6 +6,7 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from time import perf_counter
+from typing import TextIO
 
 Report = Callable[[str, int, int], None]
 """Told the name of a kernel, its index and the count, before each one."""
@@ -59,3 +60,17 @@ def _spinner(verb: str) -> Iterator[Report]:
 
 def _say(text: str) -> None:
     print(f"island: {text}", file=sys.stderr, flush=True)
+
+
+@contextmanager
+def tick_progress(title: str, total: int, stream: TextIO) -> Iterator[Callable[[int], None]]:
+    """Show a bar while ticks go by, on a terminal; nothing elsewhere."""
+    if not stream.isatty():
+        yield lambda tick: None
+        return
+    from rich.console import Console
+    from rich.progress import Progress
+
+    with Progress(console=Console(file=stream), transient=True) as progress:
+        task = progress.add_task(title, total=total)
+        yield lambda tick: progress.update(task, completed=tick + 1)

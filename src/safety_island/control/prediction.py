@@ -15,11 +15,16 @@ _TAIL = 100.0  # seconds that the closing duplicate stands still
 
 @kernel
 def _filtered_speed(current, target, ds, tau, limit):
-    """Velocity filter over one step of ``ds`` [m]: first-order lag, acceleration-limited."""
-    dt = ds / max(abs(current), _EPSILON)
-    a = tau / max(tau + dt, _EPSILON)
-    step = a * current + (1.0 - a) * target - current
-    return current + max(-limit * dt, min(limit * dt, step))
+    """Velocity filter over one step of ``ds`` [m]: first-order lag, acceleration-limited.
+
+    The lag's weight dt / (tau + dt) and the limit are written with dt = ds / speed multiplied out,
+    which leaves one division in the chain from point to point.
+    """
+    speed = max(abs(current), _EPSILON)
+    step = (target - current) * ds / (tau * speed + ds) if ds > 0.0 else 0.0
+    if abs(step) * speed > limit * ds:
+        step = math.copysign(limit * ds / speed, step)
+    return current + step
 
 
 @kernel

@@ -12,17 +12,16 @@ from safety_island.control.limits import MAX_REFERENCE
 from safety_island.control.points import nearest_index, offset_along, segment_of
 from safety_island.control.reference_smoothing import smooth_reference
 from safety_island.control.spline import (
-    eliminate,
+    fit_space_curve,
     interval_from,
     second_derivatives,
-    second_derivatives_3d,
     spline_value,
     unwrap_step,
 )
 
-_YAW_KNOTS = 64
+_YAW_KNOTS = 48
 """Knots beyond the one asked for that a spline's value depends on in double precision: the
-influence of a knot falls to a half or less with each step, so 2**-64 is left."""
+influence of a knot falls to a half or less with each step, so 2**-48 is left."""
 
 
 @kernel
@@ -32,22 +31,15 @@ def accept_source(points, n, lat):
     py = lat.py
     pz = lat.pz
     pv = lat.pv
-    arc = lat.arc
     for i in range(n):
         point = points[i]
         px[i] = point.x
         py[i] = point.y
         pz[i] = point.z
         pv[i] = point.v
-    arc[0] = 0.0
-    for i in range(1, n):
-        dx = px[i] - px[i - 1]
-        dy = py[i] - py[i - 1]
-        arc[i] = arc[i - 1] + math.sqrt(dx * dx + dy * dy)
     last = points[n - 1]
     lat.source_yaw_end = yaw_of(last.qx, last.qy, last.qz, last.qw)
-    eliminate(arc, lat.gain, n)
-    second_derivatives_3d(arc, lat.gain, px, py, pz, lat.mx, lat.my, lat.mz, n)
+    fit_space_curve(lat.arc, lat.gain, px, py, pz, lat.mx, lat.my, lat.mz, n)
     _fit_yaw(points, n, lat)
     lat.source_n = n
 

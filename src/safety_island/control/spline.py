@@ -1,18 +1,8 @@
-"""Natural cubic splines over the arc length of a trajectory, several curves sharing one elimination."""
+"""Natural cubic splines over the arc length of a trajectory, curves sharing one elimination."""
 
 import math
 
 from safety_island.control.kernel import kernel
-
-
-@kernel
-def eliminate(arc, gain, n):
-    """Fill the elimination factors of the natural-spline system for knots ``arc[:n]``."""
-    gain[0] = 0.0
-    for i in range(1, n - 1):
-        before = arc[i] - arc[i - 1]
-        after = arc[i + 1] - arc[i]
-        gain[i] = after / (2.0 * (before + after) - before * gain[i - 1])
 
 
 @kernel
@@ -31,19 +21,26 @@ def second_derivatives(arc, gain, values, second, n):
 
 
 @kernel
-def second_derivatives_3d(arc, gain, x, y, z, mx, my, mz, n):
-    """Fill the second derivatives of a space curve in one pass."""
-    mx[0] = my[0] = mz[0] = 0.0
+def fit_space_curve(arc, gain, x, y, z, mx, my, mz, n):
+    """Fill arc length, elimination factors and second derivatives of a curve through n points.
+
+    One pass forward and one back: the chains of all three curves run side by side.
+    """
     last = n - 1
+    arc[0] = gain[0] = mx[0] = my[0] = mz[0] = 0.0
     mx[last] = my[last] = mz[last] = 0.0
-    before = arc[1] - arc[0]
-    sx = (x[1] - x[0]) / before
-    sy = (y[1] - y[0]) / before
-    sz = (z[1] - z[0]) / before
+    before = _step_length(x, y, 0)
+    arc[1] = before
+    inverse = 1.0 / before
+    sx = (x[1] - x[0]) * inverse
+    sy = (y[1] - y[0]) * inverse
+    sz = (z[1] - z[0]) * inverse
     for i in range(1, last):
-        after = arc[i + 1] - arc[i]
+        after = _step_length(x, y, i)
+        arc[i + 1] = arc[i] + after
+        pivot = 1.0 / (2.0 * (before + after) - before * gain[i - 1])
+        gain[i] = after * pivot
         inverse = 1.0 / after
-        pivot = gain[i] * inverse
         tx = (x[i + 1] - x[i]) * inverse
         ty = (y[i + 1] - y[i]) * inverse
         tz = (z[i + 1] - z[i]) * inverse
@@ -58,6 +55,14 @@ def second_derivatives_3d(arc, gain, x, y, z, mx, my, mz, n):
         mx[i] -= gain[i] * mx[i + 1]
         my[i] -= gain[i] * my[i + 1]
         mz[i] -= gain[i] * mz[i + 1]
+
+
+@kernel
+def _step_length(x, y, i):
+    """2-D distance from point i to the next."""
+    dx = x[i + 1] - x[i]
+    dy = y[i + 1] - y[i]
+    return math.sqrt(dx * dx + dy * dy)
 
 
 @kernel

@@ -1,0 +1,108 @@
+"""``island replay``: recorded runs through the real controller node, compared with their outputs."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from safety_island.cli.options import add_json
+from safety_island.cli.parser import teach
+from safety_island.cli.progress import prepare_kernels
+
+if TYPE_CHECKING:
+    from safety_island.replay.compare import Verdict
+
+PURPOSE = """
+Feed recorded runs of Autoware's C++ controllers through the real controller node on virtual time,
+and compare what it publishes with what was recorded. For each run: the number of ticks, the
+greatest difference in each column, the first tick that is not close enough, pass or fail. The exit
+code is 1 when a run fails.
+"""
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    teach(
+        parser,
+        PURPOSE,
+        ("island replay tests/golden/data", "every run below a folder"),
+        ("island replay s_curve/ctrl0.15_osqp.npz --csv out", "one run, its ticks as CSV"),
+        ("island replay tests/golden/data --json", "for a script"),
+    )
+    parser.add_argument(
+        "paths", nargs="+", type=Path, metavar="FILE_OR_FOLDER", help="recorded runs (.npz)"
+    )
+    parser.add_argument(
+        "--csv", type=Path, metavar="DIR", help="write DIR/<scenario>__<run>.csv, tick by tick"
+    )
+    parser.add_argument(
+        "--solver",
+        choices=("unconstraint_fast", "osqp", "daqp"),
+        help="solve with this instead of the run's own solver",
+    )
+    add_json(parser, "the verdicts")
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Replay and judge every run."""
+    from safety_island.replay.recording import find
+
+    paths = find(arguments.paths)
+    prepare_kernels()
+    verdicts = []
+    for index, path in enumerate(paths):
+        verdict = _replay(path, arguments, f"{index + 1} of {len(paths)}")
+        verdicts.append((path, verdict))
+        if not arguments.json:
+            print(_line(verdict), flush=True)
+    passed = sum(verdict.passed for _, verdict in verdicts)
+    if arguments.json:
+        print(json.dumps(_as_json(verdicts), indent=2))
+    else:
+        print(f"{len(verdicts)} runs: {passed} passed, {len(verdicts) - passed} failed")
+    return 0 if passed == len(verdicts) else 1
+
+
+def _replay(path: Path, arguments: argparse.Namespace, place: str) -> Verdict:
+    from safety_island.cli.progress import tick_progress
+    from safety_island.replay.compare import judge
+    from safety_island.replay.feed import replay
+    from safety_island.replay.recording import load
+    from safety_island.replay.write import write_csv
+
+    run = load(path)
+    with tick_progress(f"{place}: {run.name}", run.ticks, sys.stderr) as report:
+        replayed = replay(run, arguments.solver, report)
+    if arguments.csv is not None:
+        write_csv(arguments.csv, run, replayed)
+    return judge(run, replayed)
+
+
+def _line(verdict: Verdict) -> str:
+    """One run for a person."""
+    differences = "  ".join(f"{name} {value:.1e}" for name, value in verdict.greatest.items())
+    loose = f" ({verdict.loose_ticks} held loosely)" if verdict.loose_ticks else ""
+    word = "pass" if verdict.passed else "FAIL"
+    text = f"{word}  {verdict.name}  {verdict.ticks} ticks{loose}\n      {differences}"
+    if verdict.exceeding is not None:
+        text += f"\n      first beyond tolerance: {verdict.exceeding}"
+    return text
+
+
+def _as_json(verdicts: list[tuple[Path, Verdict]]) -> dict[str, Any]:
+    runs = [
+        {
+            "name": verdict.name,
+            "file": str(path),
+            "ticks": verdict.ticks,
+            "loose_ticks": verdict.loose_ticks,
+            "greatest_difference": verdict.greatest,
+            "first_exceeding": verdict.exceeding and verdict.exceeding._asdict(),
+            "passed": verdict.passed,
+        }
+        for path, verdict in verdicts
+    ]
+    return {"runs": runs, "passed": all(run["passed"] for run in runs)}

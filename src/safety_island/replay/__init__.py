@@ -1,0 +1,1 @@
+"""Replay of recorded runs through the real controller node on virtual time, and its judgement."""

@@ -1,0 +1,105 @@
+"""A recorded run fed through the real controller node: messages as bytes, time as recorded."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from safety_island import params, platform
+from safety_island.control.follower import TrajectoryFollower
+from safety_island.control.records import Records
+from safety_island.dds import topics
+from safety_island.messages import inputs as codec
+from safety_island.messages.trajectory import encode_trajectory
+from safety_island.messages.wire import Time
+from safety_island.node import ControllerNode
+from safety_island.node.memory import MemoryDomain
+from safety_island.platform.interfaces import LogConfig, LogLevel
+from safety_island.replay.recording import (
+    ACCELERATION,
+    CONTRACT_COLUMNS,
+    ODOMETRY,
+    OPERATION_MODE,
+    STEERING,
+    Recording,
+    Table,
+)
+
+_STOP = 1
+_POSE = ("x", "y", "z", "qx", "qy", "qz", "qw", "vx", "vy")
+
+
+class Replay:
+    """The controller node on virtual time, and publishers that play a recording to it."""
+
+    def __init__(self, run: Recording, solver: str | None = None) -> None:
+        """``solver`` replaces the one that the run was recorded with."""
+        changes = run.overrides | ({"qp_solver_type": solver} if solver else {})
+        parameters = params.from_mapping(changes, "firmware")
+        self.run = run
+        self.platform = platform.load("sim", LogConfig(level=LogLevel.NONE))
+        domain = MemoryDomain(self.platform.clock)
+        self.follower = TrajectoryFollower(parameters)
+        self.node = ControllerNode(self.platform, domain, self.follower, parameters.node)
+        self._write = {
+            topic.key: domain.publisher(topic.name, topic.type_name, topic.qos).write
+            for topic in topics.INPUTS
+        }
+        # The firmware takes the operation mode as received from the beginning.
+        self._play_mode(_STOP, True)
+
+    def tick(self, tick: int) -> Records | None:
+        """Deliver the messages of one row and do the tick; the command, when one was published."""
+        now = float(self.run.state["t"][tick])
+        self.platform.clock.advance_to_ns(round(now * 1e9))
+        if self.run.has_new_trajectory(tick):
+            stamp = Time.from_seconds(float(self.run.traj_select[tick, 3]))
+            points = self.run.trajectory(tick)
+            self._write["trajectory"](encode_trajectory(stamp, "map", points))
+        self._play(tick, Time.from_seconds(now))
+        return self.follower.command if self.node.tick(now).published else None
+
+    def _play(self, tick: int, stamp: Time) -> None:
+        row = {name: float(column[tick]) for name, column in self.run.state.items()}
+        mask = int(self.run.deliver_mask[tick])
+        if mask & ODOMETRY:
+            pose = (row[name] for name in _POSE)
+            odometry = codec.Odometry(stamp, "map", "base_link", *pose, 0.0, 0.0, 0.0, row["wz"])
+            self._write["odometry"](codec.encode_odometry(odometry))
+        if mask & STEERING:
+            self._write["steering"](codec.encode_steering(codec.Steering(stamp, row["steer"])))
+        if mask & ACCELERATION:
+            acceleration = codec.Acceleration(stamp, "base_link", row["ax"], *(0.0,) * 5)
+            self._write["acceleration"](codec.encode_acceleration(acceleration))
+        if mask & OPERATION_MODE:
+            self._play_mode(int(row["mode"]), bool(row["enabled"]))
+
+    def _play_mode(self, mode: int, enabled: bool) -> None:
+        message = codec.OperationMode(Time(), mode, enabled)
+        self._write["operation_mode"](codec.encode_operation_mode(message))
+
+
+def replay(
+    run: Recording,
+    solver: str | None = None,
+    report: Callable[[int], None] | None = None,
+) -> dict[str, Table]:
+    """Replay a run; return the contract's columns and is_steer_converged, each (ticks,).
+
+    A tick that published nothing holds NaN, as in the recordings. ``report`` is told each tick.
+    """
+    player = Replay(run, solver)
+    columns = {name: np.full(run.ticks, np.nan) for name in CONTRACT_COLUMNS}
+    columns["t"][:] = run.state["t"]
+    columns["is_steer_converged"] = np.full(run.ticks, np.nan)
+    for tick in range(run.ticks):
+        command = player.tick(tick)
+        columns["published"][tick] = command is not None
+        if command is not None:
+            for name in CONTRACT_COLUMNS[2:]:
+                columns[name][tick] = command[0][name]
+            columns["is_steer_converged"][tick] = player.follower.trace[0].is_steer_converged
+        if report is not None:
+            report(tick)
+    return columns
