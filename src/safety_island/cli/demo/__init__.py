@@ -1,0 +1,144 @@
+"""``island demo``: three processes, one live view, no configuration."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import signal
+import sys
+from contextlib import suppress
+
+from safety_island.cli import options
+from safety_island.cli.demo.children import make_children
+from safety_island.cli.demo.events import DemoState
+from safety_island.cli.demo.judge import Condition, conditions
+from safety_island.cli.demo.session import Session
+from safety_island.cli.demo.show import PlainShow, TerminalShow
+from safety_island.cli.domains import pairs_from, reserve
+from safety_island.cli.parameters import read_parameters
+from safety_island.cli.parser import teach
+from safety_island.errors import IslandError
+from safety_island.sim.courses import COURSES, DEFAULT_COURSE, load_course
+
+DOMAINS = (1, 2)
+"""Main compute and safety island, when nobody else uses them on this machine."""
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    teach(
+        parser,
+        """
+Watch the safety island drive a vehicle. Three processes on this machine, over loopback: a main
+compute with a planner and a vehicle on one DDS domain, the island on another, a bridge between
+them. Exit code 0 only when the vehicle stayed on the course, reached its speed, stopped where the
+planner said, and no tick was missed.
+""",
+        ("island demo", "the s-curve, about a minute"),
+        ("island demo --course u-turn --period 0.03", "another course, at Autoware's own period"),
+        ("island demo --duration 0", "lap after lap, until Ctrl-C"),
+        ("island demo --plain", "plain lines, as when the output is no terminal"),
+    )
+    parser.add_argument(
+        "--course",
+        choices=tuple(COURSES),
+        default=DEFAULT_COURSE,
+        help=f"what to drive (default: {DEFAULT_COURSE})",
+    )
+    options.add_period(parser)
+    options.add_params(parser)
+    options.add_duration(parser, 60.0)
+    parser.add_argument(
+        "--domains",
+        nargs=2,
+        type=options.domain_id,
+        metavar=("MAIN", "ISLAND"),
+        help="DDS domains of main compute and island (default: 1 2, or the next pair that nobody "
+        "uses on this machine)",
+    )
+    parser.add_argument("--plain", action="store_true", help="plain lines instead of a live view")
+    options.add_json(parser, "the summary")
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Run the demo; 0 when all went well."""
+    read_parameters(arguments.params, arguments.period)  # a mistake is told before anything starts
+    _prepare()
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    wanted = pairs_from(*DOMAINS) if arguments.domains is None else [tuple(arguments.domains)]
+    with reserve(wanted) as pair:
+        if pair is None:
+            raise IslandError(_in_use(arguments.domains))
+        if arguments.domains is None and pair != DOMAINS:
+            _note(f"DDS domains 1 and 2 are in use on this machine; taking {pair[0]} and {pair[1]}")
+        return _run(arguments, (pair[0], pair[1]))
+
+
+def _run(arguments: argparse.Namespace, domains: tuple[int, int]) -> int:
+    children = make_children(arguments, domains)
+    interrupted = False
+    with _display(arguments, domains) as show:
+        session = Session(children, show)
+        try:
+            session.run()
+        except KeyboardInterrupt:
+            interrupted = True
+    found = conditions(session.state)
+    _tell(found, session.state, arguments.json)
+    if interrupted and arguments.duration:
+        return 128 + signal.SIGINT
+    return 0 if all(condition.holds for condition in found) else 1
+
+
+def _display(arguments: argparse.Namespace, domains: tuple[int, int]) -> PlainShow | TerminalShow:
+    if arguments.json:
+        return PlainShow(sys.stderr)
+    if arguments.plain or not sys.stdout.isatty():
+        return PlainShow(sys.stdout)
+    title = f"safety island — {arguments.course} — domains {domains[0]} and {domains[1]}"
+    return TerminalShow(load_course(arguments.course), title)
+
+
+def _tell(found: list[Condition], state: DemoState, as_json: bool) -> None:
+    if as_json:
+        print(json.dumps(_summary(found, state), indent=2))
+        return
+    for condition in found:
+        print(f"{'ok' if condition.holds else 'FAILED':>6}  {condition.text}")
+    if state.first_control_s is not None:
+        print(f"        first Control {state.first_control_s:.2f} s after the island's start")
+
+
+def _summary(found: list[Condition], state: DemoState) -> dict[str, object]:
+    return {
+        "ok": all(condition.holds for condition in found),
+        "conditions": {condition.name: condition.holds for condition in found},
+        "first_control_s": state.first_control_s,
+        "vehicle": state.vehicle_summary,
+        "island": state.island_summary,
+        "forwarded": state.forwarded,
+    }
+
+
+def _prepare() -> None:
+    """Compile ahead of the processes, so that all can see what is going on."""
+    from safety_island.cli.progress import prepare_kernels
+    from safety_island.control import kernel
+
+    with suppress(ImportError):
+        if kernel.is_cached():
+            return
+    prepare_kernels()
+
+
+def _in_use(domains: list[int] | None) -> str:
+    if domains is None:
+        return "every DDS domain is in use on this machine; end other demos"
+    return (
+        f"DDS domain {domains[0]} or {domains[1]} is in use on this machine;"
+        " choose others with --domains, or leave the option out"
+    )
+
+
+def _note(text: str) -> None:
+    print(f"island: {text}", file=sys.stderr)

@@ -1,0 +1,68 @@
+"""Whether a demo went well, each condition with its figures."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from safety_island.cli.demo.events import DemoState, Event
+from safety_island.sim.metrics import (
+    MAX_LATERAL_ERROR,
+    MAX_STOP_ERROR,
+    MIN_SPEED_RATIO,
+    SETTLING_S,
+)
+
+
+class Condition(NamedTuple):
+    """One thing that must hold."""
+
+    name: str
+    holds: bool
+    text: str
+
+
+def conditions(state: DemoState) -> list[Condition]:
+    """Judge a demo that has ended by what its processes reported last."""
+    vehicle = state.vehicle_summary
+    if not vehicle:
+        return [Condition("drive", False, "the main compute gave no summary")]
+    return [_lateral(vehicle), _speed(vehicle), _stops(vehicle), _ticks(state.island_summary)]
+
+
+def _lateral(vehicle: Event) -> Condition:
+    text = (
+        f"lateral error at most {vehicle['max_lateral_error']:.3f} m after the first"
+        f" {SETTLING_S:g} s (limit {MAX_LATERAL_ERROR} m)"
+    )
+    return Condition("on_course", bool(vehicle["on_course"]), text)
+
+
+def _speed(vehicle: Event) -> Condition:
+    text = (
+        f"reached {vehicle['top_speed']:.2f} m/s, asked for {vehicle['top_target']:.2f} m/s"
+        f" (limit {MIN_SPEED_RATIO:.0%})"
+    )
+    return Condition("reached_speed", bool(vehicle["reached_speed"]), text)
+
+
+def _stops(vehicle: Event) -> Condition:
+    errors = [abs(error) for error in vehicle["stop_errors"]]
+    if not errors:
+        text = "no stop was reached in this time"
+    else:
+        times = "once" if len(errors) == 1 else f"{len(errors)} times"
+        text = f"stopped {times}, at most {max(errors):.2f} m from the place"
+        text += f" (limit {MAX_STOP_ERROR} m)"
+    return Condition("stopped_in_place", bool(vehicle["stopped_in_place"]), text)
+
+
+def _ticks(island: Event) -> Condition:
+    if not island:
+        return Condition("no_missed_ticks", False, "the island gave no summary")
+    missed, ticks = int(island["missed_ticks"]), int(island["ticks"])
+    text = f"{ticks} ticks, {missed or 'none'} missed"
+    median_s = island["tick_s"]["median"]
+    if median_s is not None:
+        worst_s = island["tick_s"]["max"]
+        text += f"; one takes {median_s * 1e3:.2f} ms at the median, {worst_s * 1e3:.2f} ms at most"
+    return Condition("no_missed_ticks", missed == 0 and ticks > 0, text)

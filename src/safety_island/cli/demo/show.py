@@ -1,0 +1,69 @@
+"""Shows a running demo: as a live view, or as plain lines."""
+
+from __future__ import annotations
+
+import sys
+import time
+from typing import TextIO
+
+from rich.console import Console
+from rich.live import Live
+
+from safety_island.cli.demo.events import DemoState
+from safety_island.cli.demo.text import plain_line, waiting_for
+from safety_island.cli.demo.view import View
+from safety_island.sim.courses import Course
+
+PLAIN_EVERY_S = 1.0
+
+
+class TerminalShow:
+    """Redraws the view in place."""
+
+    def __init__(self, course: Course, title: str) -> None:
+        self._view = View(course, title)
+        self._live = Live(console=Console(), auto_refresh=False)
+
+    def __enter__(self) -> TerminalShow:
+        self._live.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._live.stop()
+
+    def __call__(self, state: DemoState) -> None:
+        """Draw."""
+        self._live.update(self._view.draw(state), refresh=True)
+
+
+class PlainShow:
+    """Prints a line a second, and what the processes log."""
+
+    def __init__(self, stream: TextIO = sys.stdout) -> None:
+        self._stream = stream
+        self._last = ""
+        self._next = 0.0
+        self._told = 0
+
+    def __enter__(self) -> PlainShow:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        pass
+
+    def __call__(self, state: DemoState) -> None:
+        """Print what is new."""
+        for message in state.messages[self._told :]:
+            self._print(message)
+        self._told = len(state.messages)
+        now = time.monotonic()
+        if now < self._next:
+            return
+        self._next = now + PLAIN_EVERY_S
+        line = plain_line(state) if state.is_driving else f"waiting for {waiting_for(state)}"
+        if line != self._last:
+            self._last = line
+            self._print(line)
+
+    def _print(self, text: str) -> None:
+        print(text, file=self._stream, flush=True)

@@ -1,0 +1,47 @@
+"""The figures of the live view as texts, shared by the terminal view and the plain lines."""
+
+from __future__ import annotations
+
+from safety_island.cli.demo.events import DemoState
+
+UNKNOWN = "-"
+
+
+def milliseconds(value: float | None) -> str:
+    """Return a time [s] in ms."""
+    if value is None:
+        return UNKNOWN
+    return f"{value * 1e3:.2f} ms" if value < 0.01 else f"{value * 1e3:.0f} ms"
+
+
+def controller(state: DemoState) -> str:
+    """Return what the controller does, in a word or two."""
+    if not state.tick:
+        return "starting"
+    if "state" in state.tick:
+        failed = state.tick["mpc"] != "SOLVED"
+        return str(state.tick["state"]) + (f", MPC {state.tick['mpc']}" if failed else "")
+    return str(state.tick["outcome"]).lower().replace("_", " ")
+
+
+def waiting_for(state: DemoState) -> str:
+    """Return what the start still waits for."""
+    if not state.tick:
+        return "the island to start"
+    if not state.vehicle:
+        return "the main compute to start"
+    if state.tick["outcome"] != "PUBLISHED":
+        return str(state.tick["detail"]) or str(state.tick["outcome"])
+    return "the vehicle to take commands"
+
+
+def plain_line(state: DemoState) -> str:
+    """Return one line about a vehicle that drives."""
+    vehicle = state.vehicle
+    return (
+        f"{vehicle['time_s']:6.1f} s  {vehicle['station']:6.1f} of {vehicle['length']:.0f} m"
+        f"  {vehicle['speed']:5.2f} of {vehicle['target_speed']:5.2f} m/s"
+        f"  lateral {vehicle['lateral_error']:+.3f} m  {controller(state)}"
+        f"  tick {milliseconds(state.tick.get('tick_s'))}"
+        f"  oldest input {milliseconds(state.oldest_input_s)}"
+    )

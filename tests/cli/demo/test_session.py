@@ -1,0 +1,119 @@
+"""The demo's processes are started, listened to and ended, whatever happens to them."""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+
+import pytest
+
+from safety_island.cli.demo import session
+from safety_island.cli.demo.child import Child, how_it_ended
+from safety_island.cli.demo.events import BRIDGE, ISLAND, VEHICLE, DemoState
+from safety_island.cli.demo.session import DemoError, Session
+from tests.cli.demo.samples import STATUS, TICK, VEHICLE_SUMMARY
+
+SERVE = """
+import signal, sys, threading
+stop = threading.Event()
+signal.signal(signal.SIGTERM, lambda *_: stop.set())
+print({line!r}, flush=True)
+while not stop.wait(0.01): pass
+print({last!r}, flush=True)
+"""
+
+
+def child(name: str, code: str) -> Child:
+    return Child(name, (), program=(sys.executable, "-c", code))
+
+
+def server(name: str, line: object, last: object = None) -> Child:
+    """A process that says one thing, and another when it is told to end."""
+    texts = {"line": json.dumps(line), "last": json.dumps(last or {"event": "end"})}
+    return child(name, SERVE.format(**texts))
+
+
+def run(*children: Child) -> DemoState:
+    running = Session(children, lambda state: None)
+    try:
+        running.run()
+    finally:
+        assert all(one.exit_code is not None for one in children), "all have ended"
+    return running.state
+
+
+def test_ends_when_the_main_compute_ends() -> None:
+    code = f"print({json.dumps(STATUS)!r}); print({json.dumps(VEHICLE_SUMMARY)!r})"
+    island = server(ISLAND, TICK, {"event": "summary", "ticks": 3})
+    state = run(island, server(BRIDGE, {"event": "counts", "forwarded": 5}), child(VEHICLE, code))
+    assert state.vehicle_summary == VEHICLE_SUMMARY
+    assert state.island_summary["ticks"] == 3, "said when it was told to end"
+
+
+@pytest.mark.parametrize("name", [ISLAND, BRIDGE])
+def test_death_is_told_and_ends_the_others(name: str) -> None:
+    dying = child(name, "import sys; print('no bus', file=sys.stderr); sys.exit(3)")
+    other = BRIDGE if name == ISLAND else ISLAND
+    with pytest.raises(DemoError, match=rf"{name} died \(exit code 3\); it said: no bus"):
+        run(dying, server(other, TICK), server(VEHICLE, STATUS))
+
+
+def test_killed_main_compute_is_told() -> None:
+    dying = child(VEHICLE, "import os; os.kill(os.getpid(), 9)")
+    with pytest.raises(DemoError, match=r"main-compute died \(signal SIGKILL\)"):
+        run(server(ISLAND, TICK), dying)
+
+
+def test_orderly_end_of_the_island_is_a_death_too() -> None:
+    with pytest.raises(DemoError, match=r"island died \(exit code 0\)"):
+        run(child(ISLAND, ""), server(VEHICLE, STATUS))
+
+
+def test_vehicle_that_does_not_move_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(session, "START_LIMIT_S", 0.2)
+    with pytest.raises(
+        DemoError, match=r"did not move within 0\.2 s: waiting for the main compute"
+    ):
+        run(server(ISLAND, TICK), child(VEHICLE, "import time; time.sleep(60)"))
+
+
+def test_child_that_will_not_end_is_killed() -> None:
+    code = "import signal, time; signal.signal(signal.SIGTERM, lambda *_: None)\n"
+    stubborn = child(BRIDGE, code + "print('{}', flush=True)\nwhile True: time.sleep(1)")
+    stubborn.start()
+    while not list(stubborn.events()):
+        time.sleep(0.01)
+    stubborn.tell_to_stop()
+    assert stubborn.wait(0.2) == -9
+    stubborn.close()
+
+
+def test_output_that_is_no_json_is_kept_as_words() -> None:
+    talking = child(BRIDGE, "print('Traceback')")
+    talking.start()
+    talking.wait(30)
+    assert list(talking.events()) == []
+    assert talking.said == ["Traceback"]
+    talking.close()
+
+
+def test_configuration_of_the_user_does_not_reach_the_children(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setenv("CYCLONEDDS_URI", "file:///nowhere.xml")
+    asking = child(ISLAND, "import os, json; print(json.dumps(dict(os.environ)))")
+    asking.start()
+    asking.wait(30)
+    (environment,) = asking.events()
+    assert "CYCLONEDDS_URI" not in environment
+    asking.close()
+
+
+def test_how_it_ended() -> None:
+    assert [how_it_ended(code) for code in (0, 3, -9, -99)] == [
+        "exit code 0",
+        "exit code 3",
+        "signal SIGKILL",
+        "signal 99",
+    ]
