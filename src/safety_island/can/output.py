@@ -1,0 +1,147 @@
+"""Commands go out on CAN: three frames together, or the command counts as failed."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Callable, Iterable
+from typing import NamedTuple
+
+from safety_island.can.bus import BusLink, Delivery
+from safety_island.can.command import Cause, Command
+from safety_island.can.counters import CanCounters
+from safety_island.can.encoder import Rejection, Triple, encode
+from safety_island.can.frames import FRAMES
+from safety_island.can.mode import OutputMode
+from safety_island.can.output_log import OutputLog
+from safety_island.can.receiver import SEQUENCE_MODULUS
+from safety_island.can.recovery import Recovery, Remedy
+from safety_island.platform.interfaces import CanFrame, CanResult, Logger
+
+_SINGLES = struct.Struct("<5f")
+
+Recorder = Callable[[int, Iterable[CanFrame]], None]
+"""Told the stamp [ns] and the frames that were handed to the bus."""
+
+
+class Sent(NamedTuple):
+    """What became of one command."""
+
+    sequence: int
+    cause: Cause | None
+    """None: all three frames were handed over."""
+
+
+def as_published(command: Command) -> Command:
+    """Return the command in single precision, as the DDS message carries it.
+
+    So the frames agree with ``control_cmd`` to the last scaled digit.
+    """
+    try:
+        numbers = _SINGLES.unpack(_SINGLES.pack(*command[:5]))
+    except OverflowError:  # beyond single precision, hence beyond int32: the encoder rejects it
+        return command
+    return Command._make((*numbers, *command[5:]))
+
+
+class CanOutput:
+    """Sends commands over one bus; every failure is counted, told once, and recovered from.
+
+    ``link``: the bus; None in a mode without CAN, or where the target has no bus and DDS goes on
+    alone. ``budget_s``: the longest that one command may wait for the bus, at most a tenth of the
+    control period. ``open_failure``: why the bus is not open yet; it is tried again.
+    """
+
+    def __init__(
+        self,
+        mode: OutputMode,
+        link: BusLink | None,
+        budget_s: float,
+        logger: Logger,
+        recorder: Recorder | None = None,
+        open_failure: str | None = None,
+    ) -> None:
+        self.mode = mode
+        self.counters = CanCounters()
+        self._link = link
+        self._budget_s = budget_s
+        self._recorder = recorder
+        self._sequence = 0
+        self._is_renewed = False
+        self._recovery = Recovery()
+        self._log = OutputLog(logger)
+        if open_failure is not None:
+            self._recovery.fail(CanResult.NOT_OPEN, 0.0)
+            self._log.not_open(open_failure)
+
+    def send(self, command: Command, stamp_ns: int, now_s: float) -> Sent | None:
+        """Send one command, stamped [ns]; ``now_s`` is the monotonic time of the tick.
+
+        Returns None when there is no CAN: in ``DDS_ONLY``, or without a bus. Each call uses up a
+        sequence number, also for a rejected command.
+        """
+        if self._link is None or not self.mode.uses_can:
+            return None
+        sequence = self._sequence
+        self._sequence = (sequence + 1) % SEQUENCE_MODULUS
+        frames = encode(as_published(command), self.mode, sequence, stamp_ns)
+        if isinstance(frames, Rejection):
+            return Sent(sequence, self._reject(frames))
+        delivery = self._deliver(self._link, frames, now_s)
+        if delivery is None:
+            return Sent(sequence, self._fail(0, self._recovery.last))
+        if self._recorder is not None and delivery.sent:
+            self._recorder(stamp_ns, frames[: delivery.sent])
+        return Sent(sequence, self._judge(delivery, now_s))
+
+    def close(self) -> None:
+        """Give the bus back."""
+        if self._link is not None:
+            self._link.close()
+
+    def _reject(self, rejection: Rejection) -> Cause:
+        self.counters.rejected += 1
+        self.counters.frames[rejection.arbitration_id, rejection.cause] += 1
+        self._log.rejected(rejection)
+        return rejection.cause
+
+    def _deliver(self, link: BusLink, frames: Triple, now_s: float) -> Delivery | None:
+        """Hand the frames to the bus; None while it is not to be tried."""
+        if link.is_opening:
+            return None
+        if not self._is_renewed and not self._mend(link, now_s):
+            return None
+        self._is_renewed = False
+        return link.send(frames, self._budget_s)
+
+    def _mend(self, link: BusLink, now_s: float) -> bool:
+        """Do what the last failure asks for; return whether the bus may be tried at once."""
+        match self._recovery.remedy(now_s):
+            case Remedy.WAIT:
+                return False
+            case Remedy.DISCARD:
+                link.discard()
+            case Remedy.REOPEN:
+                self.counters.reopened += 1
+                link.reopen()
+                self._is_renewed = link.is_opening
+        return not self._is_renewed
+
+    def _judge(self, delivery: Delivery, now_s: float) -> Cause | None:
+        for event in delivery.events:
+            self.counters.events[event.kind] += 1
+            self._log.event(event)
+        if delivery.result is CanResult.SENT:
+            self.counters.sent += 1
+            self._log.sent()
+            self._recovery.succeed()
+            return None
+        self._recovery.fail(delivery.result, now_s)
+        return self._fail(delivery.sent, delivery.result)
+
+    def _fail(self, index: int, result: CanResult) -> Cause:
+        cause = Cause[result.name]
+        arbitration_id = FRAMES[index].arbitration_id
+        self.counters.failed += 1
+        self.counters.frames[arbitration_id, cause] += 1
+        self._log.failed(arbitration_id, cause)
+        return cause
