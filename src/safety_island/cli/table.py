@@ -28,6 +28,7 @@ COMMANDS = (
     Command("replay", "replay", "Feed recorded runs through the controllers and compare."),
     Command("bench", "bench", "Measure the tick, or the way from odometry to command."),
     Command("params", "params", "Show or check controller parameters."),
+    Command("can", "can", "Watch, send and describe the CAN command frames."),
     Command(
         "prepare", "prepare", "Compile the control kernels now, so that later starts are quick."
     ),
