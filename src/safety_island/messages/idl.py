@@ -82,7 +82,7 @@ class _Parser:
         name = self._next()
         self._expect("=")
         owner = "/".join(path).removesuffix(_CONSTANTS)
-        self._constants.setdefault(owner, {})[name] = int(self._next())
+        self._constants.setdefault(owner, {})[name] = self._number()
         self._expect(";")
 
     def _struct(self, path: tuple[str, ...]) -> None:
@@ -128,15 +128,22 @@ class _Parser:
         bound = None
         if self._peek() == ",":
             self._next()
-            bound = int(self._next())
+            bound = self._number()
         self._expect(">")
         return Sequence(element, bound)
 
     def _bound(self, opening: str, closing: str) -> int:
         self._expect(opening)
-        size = int(self._next())
+        size = self._number()
         self._expect(closing)
         return size
+
+    def _number(self) -> int:
+        word = self._next()
+        try:
+            return int(word)
+        except ValueError:
+            raise self._error(f"found {word!r}, expected a number") from None
 
     def _skip_annotations(self) -> float | int | bool | str | None:
         """Step over annotations; return the value of @default when there is one."""

@@ -29,7 +29,7 @@ _HEAD: list[tuple[str, str]] = [
 ]
 _TIME: list[tuple[str, str]] = [("sec", "<i4"), ("nanosec", "<u4")]
 
-POINT: Any = np.dtype((np.record, np.dtype([*_HEAD, *_TIME])))
+POINT: Any = np.dtype((np.record, np.dtype([*_HEAD, *_TIME], align=True)))
 """One point, 88 bytes; ``sec`` and ``nanosec`` are the time_from_start of the *next* point.
 
 The same layout as ``control.records.POINT`` (a test compares them).

@@ -1,0 +1,119 @@
+"""Two serializers that are not ours: rosbags (types from .msg texts) and cyclonedds."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+
+from safety_island.dds.types import cyclone_type
+from safety_island.messages import registry
+from safety_island.messages.description import Array, Element, FieldType, Named, Sequence
+
+MSG_TEXTS = {
+    "autoware_control_msgs/msg/Lateral": """
+        builtin_interfaces/Time stamp
+        builtin_interfaces/Time control_time
+        float32 steering_tire_angle
+        float32 steering_tire_rotation_rate
+        bool is_defined_steering_tire_rotation_rate""",
+    "autoware_control_msgs/msg/Longitudinal": """
+        builtin_interfaces/Time stamp
+        builtin_interfaces/Time control_time
+        float32 velocity
+        float32 acceleration
+        float32 jerk
+        bool is_defined_acceleration
+        bool is_defined_jerk""",
+    "autoware_control_msgs/msg/Control": """
+        builtin_interfaces/Time stamp
+        builtin_interfaces/Time control_time
+        autoware_control_msgs/Lateral lateral
+        autoware_control_msgs/Longitudinal longitudinal""",
+    "autoware_planning_msgs/msg/TrajectoryPoint": """
+        builtin_interfaces/Duration time_from_start
+        geometry_msgs/Pose pose
+        float32 longitudinal_velocity_mps
+        float32 lateral_velocity_mps
+        float32 acceleration_mps2
+        float32 heading_rate_rps
+        float32 front_wheel_angle_rad
+        float32 rear_wheel_angle_rad""",
+    "autoware_planning_msgs/msg/Trajectory": """
+        std_msgs/Header header
+        autoware_planning_msgs/TrajectoryPoint[] points""",
+    "autoware_vehicle_msgs/msg/SteeringReport": """
+        builtin_interfaces/Time stamp
+        float32 steering_tire_angle""",
+    "autoware_adapi_v1_msgs/msg/OperationModeState": """
+        uint8 UNKNOWN = 0
+        uint8 STOP = 1
+        uint8 AUTONOMOUS = 2
+        uint8 LOCAL = 3
+        uint8 REMOTE = 4
+        builtin_interfaces/Time stamp
+        uint8 mode
+        bool is_autoware_control_enabled
+        bool is_in_transition
+        bool is_stop_mode_available
+        bool is_autonomous_mode_available
+        bool is_local_mode_available
+        bool is_remote_mode_available""",
+    "tier4_debug_msgs/msg/Float64Stamped": """
+        builtin_interfaces/Time stamp
+        float64 data""",
+    "rmw_dds_common/msg/Gid": "uint8[16] data",
+}
+"""As the public packages define them, written from spec and packages, not from our IDL files."""
+
+
+@cache
+def typestore() -> Any:
+    """Return a rosbags type store that knows every type of the island."""
+    store = get_typestore(Stores.ROS2_KILTED)
+    store.fielddefs.pop("rmw_dds_common/msg/Gid")
+    for name, text in MSG_TEXTS.items():
+        lines = "\n".join(line.strip() for line in text.splitlines())
+        store.register(get_types_from_msg(lines, name))
+    return store
+
+
+def rosbags_bytes(name: str, message: dict[str, Any], little_endian: bool = True) -> bytes:
+    """Serialize with rosbags."""
+    made = _rosbags_object(name, message)
+    return bytes(typestore().serialize_cdr(made, name, little_endian=little_endian))
+
+
+def cyclone_bytes(name: str, message: dict[str, Any]) -> bytes:
+    """Serialize with the types that cyclonedds builds from our IDL."""
+    data: bytes = _cyclone_object(name, message).serialize()
+    return data
+
+
+def _rosbags_object(name: str, message: dict[str, Any]) -> Any:
+    values = {
+        field.name: _map(field.type, message[field.name], _rosbags_object, True)
+        for field in registry.struct_of(name).fields
+    }
+    return typestore().types[name](**values)
+
+
+def _cyclone_object(name: str, message: dict[str, Any]) -> Any:
+    values = {
+        field.name: _map(field.type, message[field.name], _cyclone_object, False)
+        for field in registry.struct_of(name).fields
+    }
+    return cyclone_type(name)(**values)
+
+
+def _map(kind: FieldType, value: Any, make: Any, arrays: bool) -> Any:
+    if isinstance(kind, (Array, Sequence)):
+        if isinstance(kind.element, Named):
+            return [make(kind.element.name, item) for item in value]
+        return np.array(value, _DTYPES[kind.element]) if arrays else list(value)
+    return make(kind.name, value) if isinstance(kind, Named) else value
+
+
+_DTYPES: dict[Element, str] = {"double": "f8", "uint8": "u1"}  # type: ignore[dict-item]
