@@ -84,9 +84,7 @@ class SparseProblem:
         """Set up, solve and polish once, cold and silent; return OSQP's results."""
         with contextlib.redirect_stdout(io.StringIO()):  # it reports a skipped polish regardless
             solver = self._osqp.OSQP()
-            solver.setup(
-                self.hessian, self.gradient, self.rows, self.lower, self.upper, **SETTINGS
-            )
+            solver.setup(self.hessian, self.gradient, self.rows, self.lower, self.upper, **SETTINGS)
             return solver.solve(raise_error=False)
 
 
