@@ -1,0 +1,70 @@
+"""Writes docs/topics.md from the table of topics: ``python -m safety_island.cli.topics_page``."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from safety_island.dds.names import dds_topic_name
+from safety_island.dds.topics import TOPICS, TopicEntry
+from safety_island.messages.registry import dds_type_name
+
+PAGE = "docs/topics.md"
+
+INTRODUCTION = """\
+# Topics
+
+Generated from the one table in `src/safety_island/dds/topics.py`, which also makes the
+publishers and subscriptions. To renew this page: `python -m safety_island.cli.topics_page`.
+
+The island talks plain DDS and appears in `ros2 node list` as a node. On the wire a ROS topic
+`/a/b` is the DDS topic `rt/a/b`, a ROS type `pkg/msg/Name` is the DDS type
+`pkg::msg::dds_::Name_`, and a message is plain CDR (XCDR1, little endian).
+
+All endpoints are reliable. The island takes the newest sample of each input at each tick and counts
+what it passes over. The rates of the inputs are those of Autoware's planning simulator.
+"""
+
+
+def render() -> str:
+    """Return the page."""
+    head = ["direction", "topic and type", "durability", "rate", "bridged (domains)"]
+    rows = [head, ["---"] * len(head), *(_row(entry) for entry in TOPICS)]
+    table = "\n".join(f"| {' | '.join(row)} |" for row in rows)
+    names = "\n".join(
+        f"| `{entry.name}` | `{dds_topic_name(entry.name)}` | `{dds_type_name(entry.type_name)}` |"
+        for entry in TOPICS
+    )
+    return (
+        f"{INTRODUCTION}\n{table}\n\n"
+        "## As DDS tools show them\n\n"
+        f"| ROS topic | DDS topic | DDS type |\n| --- | --- | --- |\n{names}\n"
+    )
+
+
+def _row(entry: TopicEntry) -> list[str]:
+    return [
+        entry.direction.value,
+        f"`{entry.name}`<br>`{entry.type_name}`",
+        entry.qos.durability.replace("_", " "),
+        _rate(entry.rate_hz),
+        "no" if entry.bridged is None else f"{entry.bridged[0]} → {entry.bridged[1]}",
+    ]
+
+
+def _rate(rate_hz: float | None) -> str:
+    if rate_hz is None:
+        return "on change"
+    return f"{rate_hz:g} Hz" if rate_hz else "every tick"
+
+
+def main(arguments: Sequence[str]) -> None:
+    """Write the page to the path given, or to where it belongs below the working directory."""
+    path = Path(arguments[0] if arguments else PAGE)
+    path.write_text(render(), "utf-8")
+    print(f"wrote {path}")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
