@@ -1,4 +1,4 @@
-"""``island replay``: recorded runs through the real controller node, compared with their outputs."""
+"""``island replay``: recorded runs through the real node, compared with what they hold."""
 
 from __future__ import annotations
 

@@ -7,6 +7,7 @@ calls ``run_lateral``, ``run_longitudinal`` and ``sync`` itself.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -15,12 +16,11 @@ from safety_island.control.input_check import (
     MAX_ACCELERATION,
     MAX_POSITION,
     MAX_SPEED,
+    MAX_SQUARE_NORM,
     MAX_TURN,
-    check_quaternion,
+    MIN_SQUARE_NORM,
     check_trajectory,
-    check_value,
 )
-from safety_island.control.kernel import plain
 from safety_island.control.lateral import lateral_finish, lateral_prepare, lateral_step
 from safety_island.control.lateral_state import new_lateral_state
 from safety_island.control.limits import MAX_POINTS
@@ -46,19 +46,19 @@ INPUT_NAMES = ("trajectory", "odometry", "steering", "acceleration", "operation 
 """The five inputs without which there is no tick."""
 
 _FEWEST_FOR_MPC = 3
-_check_value = plain(check_value)
-_check_quaternion = plain(check_quaternion)
+_POSE_AND_SPEED = 10  # the first columns of INPUTS, from x to wz
 
 
-def _first_refusal(values: tuple[float, ...], bounds: tuple[float, ...]) -> Refusal:
-    for value, bound in zip(values, bounds, strict=True):
-        if not abs(value) <= bound:
-            return Refusal(_check_value(value, bound))
-    return Refusal.ACCEPTED
+def _refusal_of(value: float) -> Refusal:
+    """Why a number that is not within its bound is refused."""
+    return Refusal.OUT_OF_RANGE if math.isfinite(value) else Refusal.NOT_FINITE
 
 
 class TrajectoryFollower:
     """Autoware's MPC and PID controllers, with the memory of all past ticks.
+
+    Fields of a record are written through views made once: an attribute of a NumPy record costs
+    microseconds from Python.
 
     ``inputs``, ``command`` and ``trace`` are records of shape (1,); ``points`` is the trajectory
     in force. Raises ConfigurationError when the chosen solver is not installed.
@@ -71,14 +71,21 @@ class TrajectoryFollower:
         self.points = new_points()
         self.incoming = new_points()
         self.command: Records = np.zeros(1, COMMAND)
+        self._stamp = self.command["stamp"]
         self.trace: Records = np.zeros(1, TRACE)
         reset_longitudinal_trace(self.trace)
+        self._cells = {name: self.inputs[name] for name in INPUTS.names}
+        self._pose = self.inputs.view(np.float64)[:_POSE_AND_SPEED]
         self._missing = set(INPUT_NAMES)
         self._has_path = False
         self._params = pack_parameters(parameters)
         self._lateral = new_lateral_state(parameters)
         self._longitudinal = new_longitudinal_state()
         self._work = new_longitudinal_work()
+        self._convergence = (
+            self.trace["is_steer_converged"],
+            self._longitudinal["is_steer_converged"],
+        )
         self._qp: Records = np.zeros(1, QP)
         self._solve = self._external_solver()
         for kernel in (check_trajectory, lateral_step, longitudinal_step):
@@ -106,18 +113,17 @@ class TrajectoryFollower:
 
     def offer_incoming(self, n: int, stamp: float) -> Refusal:
         """Offer the first ``n`` points of ``incoming``, into which a decoder may write directly."""
-        refusal = Refusal(check_trajectory.call(self._params, self.incoming, n))
-        if refusal is Refusal.ACCEPTED and not np.isfinite(stamp):
-            refusal = Refusal.NOT_FINITE
-        if refusal is Refusal.ACCEPTED:
-            self.points, self.incoming = self.incoming, self.points
-            inputs = self.inputs[0]
-            inputs.n_points = n
-            inputs.trajectory_id += 1
-            inputs.trajectory_stamp = stamp
-            self._has_path = self._has_path or n >= _FEWEST_FOR_MPC
-            self._missing.discard("trajectory")
-        return refusal
+        if not math.isfinite(stamp):
+            return Refusal.NOT_FINITE
+        if refusal := check_trajectory.call(self._params, self.incoming, n):
+            return Refusal(refusal)
+        self.points, self.incoming = self.incoming, self.points
+        self._cells["n_points"][0] = n
+        self._cells["trajectory_id"][0] += 1
+        self._cells["trajectory_stamp"][0] = stamp
+        self._has_path = self._has_path or n >= _FEWEST_FOR_MPC
+        self._missing.discard("trajectory")
+        return Refusal.ACCEPTED
 
     def offer_odometry(
         self,
@@ -133,39 +139,41 @@ class TrajectoryFollower:
         wz: float,
     ) -> Refusal:
         """Offer the ego's pose in the map [m] and its body velocity [m/s, rad/s]."""
-        bounds = (MAX_POSITION,) * 3 + (MAX_SPEED,) * 2 + (MAX_TURN,)
-        refusal = _first_refusal((x, y, z, vx, vy, wz), bounds)
-        if refusal is Refusal.ACCEPTED:
-            refusal = Refusal(_check_quaternion(qx, qy, qz, qw))
-        if refusal is Refusal.ACCEPTED:
-            i = self.inputs[0]
-            i.x, i.y, i.z, i.qx, i.qy, i.qz, i.qw = x, y, z, qx, qy, qz, qw
-            i.vx, i.vy, i.wz = vx, vy, wz
-            self._missing.discard("odometry")
-        return refusal
+        place = max(abs(x), abs(y), abs(z))
+        speed = max(abs(vx), abs(vy))
+        total = x + y + z + vx + vy + wz  # finds the NaN that max may hide
+        if not (place <= MAX_POSITION and speed <= MAX_SPEED and abs(wz) <= MAX_TURN):
+            return _refusal_of(total)
+        square = qx * qx + qy * qy + qz * qz + qw * qw
+        if not (MIN_SQUARE_NORM <= square <= MAX_SQUARE_NORM and math.isfinite(total)):
+            refused = math.isfinite(total + square)
+            return Refusal.BAD_QUATERNION if refused else Refusal.NOT_FINITE
+        self._pose[:] = (x, y, z, qx, qy, qz, qw, vx, vy, wz)
+        self._missing.discard("odometry")
+        return Refusal.ACCEPTED
 
     def offer_steering(self, angle: float) -> Refusal:
         """Offer the measured tyre angle [rad]."""
-        refusal = _first_refusal((angle,), (MAX_TURN,))
-        if refusal is Refusal.ACCEPTED:
-            self.inputs[0].steer = angle
-            self._missing.discard("steering")
-        return refusal
+        if not abs(angle) <= MAX_TURN:
+            return _refusal_of(angle)
+        self._cells["steer"][0] = angle
+        self._missing.discard("steering")
+        return Refusal.ACCEPTED
 
     def offer_acceleration(self, ax: float) -> Refusal:
         """Offer the measured acceleration along body x [m/s^2]."""
-        refusal = _first_refusal((ax,), (MAX_ACCELERATION,))
-        if refusal is Refusal.ACCEPTED:
-            self.inputs[0].ax = ax
-            self._missing.discard("acceleration")
-        return refusal
+        if not abs(ax) <= MAX_ACCELERATION:
+            return _refusal_of(ax)
+        self._cells["ax"][0] = ax
+        self._missing.discard("acceleration")
+        return Refusal.ACCEPTED
 
     def offer_operation_mode(self, mode: int, enabled: bool) -> Refusal:
         """Offer the operation mode and whether Autoware's control is enabled."""
         if not 0 <= mode <= 255:
             return Refusal.OUT_OF_RANGE
-        self.inputs[0].mode = mode
-        self.inputs[0].enabled = enabled
+        self._cells["mode"][0] = mode
+        self._cells["enabled"][0] = enabled
         self._missing.discard("operation mode")
         return Refusal.ACCEPTED
 
@@ -223,7 +231,8 @@ class TrajectoryFollower:
 
     def sync(self) -> None:
         """Hand each controller what the other needs in the next tick."""
-        self._longitudinal[0].is_steer_converged = self.trace[0].is_steer_converged
+        lateral, longitudinal = self._convergence
+        longitudinal[0] = lateral[0]
 
     def step(self, now: float) -> bool:
         """Run one whole tick at ``now`` [s]; returns whether ``command`` is a new command."""
@@ -231,6 +240,6 @@ class TrajectoryFollower:
             return False
         if self.run_longitudinal(now) < 0:
             return False
-        self.command[0].stamp = now
+        self._stamp[0] = now
         self.sync()
         return True

@@ -18,6 +18,9 @@ MAX_ACCELERATION = 100.0
 """[m/s^2]"""
 MAX_TURN = 100.0
 """Angles [rad] and turn rates [rad/s]."""
+MIN_SQUARE_NORM = 0.99**2
+MAX_SQUARE_NORM = 1.01**2
+"""The norm of an orientation may be 1 % off."""
 
 _ACCEPTED = int(Refusal.ACCEPTED)
 _NOT_FINITE = int(Refusal.NOT_FINITE)
@@ -29,26 +32,8 @@ _TOO_LONG = int(Refusal.TOO_LONG)
 _OUT_OF_RANGE = int(Refusal.OUT_OF_RANGE)
 
 _FEWEST_POINTS = 2
-_NORM_TOLERANCE = 0.01
 _SAME_PLACE = 1e-8
 _EXTENSION_POINTS = 256  # room for the points that the terminal extension appends
-
-
-@kernel
-def check_value(value, bound):
-    """Refusal of one number that must lie within +-bound."""
-    if abs(value) <= bound:
-        return _ACCEPTED
-    return _OUT_OF_RANGE if math.isfinite(value) else _NOT_FINITE
-
-
-@kernel
-def check_quaternion(x, y, z, w):
-    """Refusal of an orientation whose norm is more than 1 % off."""
-    square = x * x + y * y + z * z + w * w
-    if abs(math.sqrt(square) - 1.0) <= _NORM_TOLERANCE:
-        return _ACCEPTED
-    return _BAD_QUATERNION if math.isfinite(square) else _NOT_FINITE
 
 
 @kernel
@@ -65,16 +50,11 @@ def _check_point(point):
     in_range = place <= MAX_POSITION and speed <= MAX_SPEED and turn <= MAX_TURN
     if not in_range or abs(point.acc) > MAX_ACCELERATION:
         return _OUT_OF_RANGE
-    return check_quaternion(point.qx, point.qy, point.qz, point.qw)
-
-
-@kernel
-def _length_bound(points, n):
-    """At least the 2-D length of a trajectory [m]; the length itself where that decides."""
-    bound = 0.0
-    for i in range(1, n):
-        bound += abs(points[i].x - points[i - 1].x) + abs(points[i].y - points[i - 1].y)
-    return bound
+    square = point.qx * point.qx + point.qy * point.qy
+    square += point.qz * point.qz + point.qw * point.qw
+    if MIN_SQUARE_NORM <= square <= MAX_SQUARE_NORM:
+        return _ACCEPTED
+    return _BAD_QUATERNION if math.isfinite(square) else _NOT_FINITE
 
 
 @kernel
@@ -95,6 +75,7 @@ def check_trajectory(params, points, n):
         return _TOO_FEW
     if n > MAX_POINTS:
         return _TOO_MANY
+    bound = 0.0  # at least the length of the path
     for i in range(n):
         reason = _check_point(points[i])
         if reason != _ACCEPTED:
@@ -104,7 +85,8 @@ def check_trajectory(params, points, n):
             dy = abs(points[i].y - points[i - 1].y)
             if dx < _SAME_PLACE and dy < _SAME_PLACE:
                 return _COINCIDENT
+            bound += dx + dy
     room = (MAX_REFERENCE - _EXTENSION_POINTS) * params[0].traj_resample_dist
-    if _length_bound(points, n) > room and _length(points, n) > room:
+    if bound > room and _length(points, n) > room:
         return _TOO_LONG
     return _ACCEPTED

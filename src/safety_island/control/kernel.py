@@ -54,11 +54,6 @@ def kernel(function: Any) -> Any:
     return _njit()(function) if JIT else function
 
 
-def plain(function: Any) -> Any:
-    """The Python source of a kernel, for a caller that has plain numbers at hand."""
-    return getattr(function, "py_func", function)
-
-
 class Entry:
     """A kernel that the outside calls: its argument types are fixed when it is defined.
 

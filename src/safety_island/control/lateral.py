@@ -1,4 +1,4 @@
-"""The lateral controller around the MPC: history, stopped state, convergence (control.md, section 6)."""
+"""The lateral controller around the MPC: history, stopped state, convergence."""
 
 import numpy as np
 

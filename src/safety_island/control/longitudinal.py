@@ -34,7 +34,7 @@ NOT_USABLE = int(LongitudinalSkip.NOT_USABLE)
 NO_SMOOTH_STOP = int(SmoothStopMode.NONE)
 
 LARGEST = 1e9
-"""Inputs beyond this (m, m/s, m/s^2, s) are no measurements; squares of it are still exact enough."""
+"""Inputs beyond this (m, m/s, m/s^2) are no measurements; their squares are far from overflow."""
 
 
 @kernel

@@ -68,11 +68,25 @@ TICK_COLUMNS = [
 LONGITUDINAL_STATE = record(STATE_COLUMNS + COMMAND_COLUMNS + TICK_COLUMNS)
 """Memories first, then what one tick computes for its own later steps."""
 
-TRACE_START = (
-    "stop_dist target_vel target_acc nearest_vel pred_vel slope_angle err_vel_filtered "
-    "pid_p pid_i pid_d ff_scale acc_ff acc_pid_applied acc_acc_limited acc_jerk_limited "
-    "acc_fb_applied acc_slope_applied"
-).split()
+TRACE_START = [
+    "stop_dist",
+    "target_vel",
+    "target_acc",
+    "nearest_vel",
+    "pred_vel",
+    "slope_angle",
+    "err_vel_filtered",
+    "pid_p",
+    "pid_i",
+    "pid_d",
+    "ff_scale",
+    "acc_ff",
+    "acc_pid_applied",
+    "acc_acc_limited",
+    "acc_jerk_limited",
+    "acc_fb_applied",
+    "acc_slope_applied",
+]
 """Columns of the trace that are NaN until a tick sets them."""
 
 

@@ -1,4 +1,4 @@
-"""One tick of the lateral MPC (control.md, section 5): from the reference path to a steering angle."""
+"""One tick of the lateral MPC: from the reference path to a steering angle."""
 
 import math
 

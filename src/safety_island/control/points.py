@@ -67,7 +67,7 @@ def nearest_index(points, n, x, y, yaw, dist_limit, yaw_limit):
 
 @kernel
 def offset_along(points, segment, x, y):
-    """Signed 2-D offset [m] of (x, y) along segment (segment, segment + 1); 0 when it has no length."""
+    """Signed 2-D offset [m] of (x, y) along a segment; 0 when it has no length."""
     a = points[segment]
     b = points[segment + 1]
     dx = b.x - a.x
@@ -126,7 +126,7 @@ def copy_distinct(points, n, target):
 
 @kernel
 def insert_point(points, n, at, point):
-    """Insert ``point`` before index ``at`` (1 or more) of a list without overlaps; return its length.
+    """Insert ``point`` before index ``at`` (1 or more) of a list without overlaps; return the count.
 
     The list stays without overlaps: a point on top of its predecessor is left out, and followers
     that it covers go.

@@ -172,7 +172,7 @@ def _close(lat, count):
 
 @kernel
 def update_reference(params, points, inputs, lat):
-    """Resample the accepted trajectory anew at the ego's projection (control.md, section 4)."""
+    """Resample the accepted trajectory anew at the ego's projection."""
     n = lat.source_n
     yaw = yaw_of(inputs.qx, inputs.qy, inputs.qz, inputs.qw)
     nearest = nearest_index(

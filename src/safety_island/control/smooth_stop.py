@@ -1,6 +1,5 @@
 """Smooth stop: how to brake over the last half metre without a jerk."""
 
-
 from safety_island.control.geometry import clip
 from safety_island.control.kernel import kernel
 from safety_island.control.status import SmoothStopMode

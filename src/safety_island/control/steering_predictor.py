@@ -1,4 +1,4 @@
-"""Prediction of the present tyre angle from the commands that were sent (control.md, section 9)."""
+"""Prediction of the present tyre angle from the commands that were sent."""
 
 import math
 

@@ -1,0 +1,1 @@
+"""Measurements on the machine at hand, stated as ratios to a yardstick of the same run."""
