@@ -3,48 +3,50 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 from safety_island.control.records import Records
 from safety_island.messages.outputs import Control
-from safety_island.messages.wire import Time
+from safety_island.messages.wire import NANOSECONDS, Time
 
 
-def stale_side(lateral_stamp: float, record: Records, oldest: float) -> str:
-    """Name the controller whose result is from before ``oldest``; empty when none is.
+class Computed(NamedTuple):
+    """One COMMAND record as Python numbers, field by field; stamps on the monotonic clock [s]."""
 
-    All times are monotonic [s]. The record's own lateral stamp is set here: the kernels leave it.
-    """
-    record["stamp"] = lateral_stamp
-    if not lateral_stamp >= oldest:
-        return "lateral"
-    if not record["longitudinal_stamp"][0] >= oldest:
-        return "longitudinal"
-    return ""
+    stamp: float
+    longitudinal_stamp: float
+    steering_tire_angle: float
+    steering_tire_rotation_rate: float
+    velocity: float
+    acceleration: float
+    is_defined_steering_tire_rotation_rate: bool
+
+    def stale_side(self, oldest: float) -> str:
+        """Name the controller whose result is from before ``oldest`` [s]; empty when none is."""
+        if not self.stamp >= oldest:
+            return "lateral"
+        return "" if self.longitudinal_stamp >= oldest else "longitudinal"
+
+    def is_finite(self) -> bool:
+        """Whether every number is one (only then their sum is one: they are float32)."""
+        return math.isfinite(sum(self))
+
+    def to_control(self, wall_offset_ns: int) -> Control:
+        """Return the message, its stamps on the wall clock.
+
+        The acceleration is always defined (the firmware leaves that flag unset), the jerk never.
+        """
+        stamp, longitudinal_stamp, angle, rate, velocity, acceleration, has_rate = self
+        own = to_time(stamp, wall_offset_ns)
+        other = own if longitudinal_stamp == stamp else to_time(longitudinal_stamp, wall_offset_ns)
+        return Control(own, other, angle, rate, velocity, acceleration, 0.0, has_rate, True, False)
 
 
-def to_control(record: Records, wall_offset_ns: int) -> Control:
-    """Return the message of a COMMAND record, its stamps on the wall clock.
-
-    The acceleration is always defined (the firmware leaves that flag unset), the jerk never.
-    """
-    stamp, longitudinal_stamp, angle, rate, velocity, acceleration, has_rate = record.item()
-    return Control(
-        Time.from_nanoseconds(int(stamp * 1e9) + wall_offset_ns),
-        Time.from_nanoseconds(int(longitudinal_stamp * 1e9) + wall_offset_ns),
-        angle,
-        rate,
-        velocity,
-        acceleration,
-        is_defined_steering_tire_rotation_rate=has_rate,
-        is_defined_acceleration=True,
-    )
+def computed(record: Records) -> Computed:
+    """Return what a COMMAND record of shape (1,) holds."""
+    return Computed._make(record.item())
 
 
-def is_finite(command: Control) -> bool:
-    """Whether the four numbers of a command are numbers (a sum of them is, when all are)."""
-    return math.isfinite(
-        command.steering_tire_angle
-        + command.steering_tire_rotation_rate
-        + command.velocity
-        + command.acceleration
-    )
+def to_time(monotonic_s: float, wall_offset_ns: int) -> Time:
+    """Return the wall-clock stamp of a time on the monotonic clock [s]."""
+    return Time(*divmod(int(monotonic_s * 1e9) + wall_offset_ns, NANOSECONDS))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 
 from safety_island.control.params import NodeParams
@@ -10,7 +9,7 @@ from safety_island.control.status import MpcStatus
 from safety_island.dds import topics
 from safety_island.messages.outputs import Control
 from safety_island.messages.wire import Time
-from safety_island.node.command import is_finite, stale_side, to_control
+from safety_island.node.command import computed
 from safety_island.node.follower import Follower
 from safety_island.node.inputs import INPUTS, Input
 from safety_island.node.node import Node
@@ -57,7 +56,8 @@ class ControllerNode(Node):
         )
         self._ticks = 0
         self._is_complete = False
-        self._lateral_stamp = -math.inf
+        self._stamp = follower.command["stamp"]
+        """Of the lateral part: the kernels leave it to their caller."""
         self._command: Control | None = None
         self._spent_ns = _NO_TIMES
 
@@ -137,7 +137,7 @@ class ControllerNode(Node):
         status = self.follower.run_lateral(now)
         if status == MpcStatus.NO_REFERENCE:
             return False
-        self._lateral_stamp = now
+        self._stamp[0] = now
         middle_ns = self.clock.monotonic_ns()
         if self.follower.run_longitudinal(now) < 0:
             return False
@@ -150,15 +150,15 @@ class ControllerNode(Node):
 
     def _publish(self, now: float, start_ns: int) -> tuple[Outcome, str]:
         """Refuse what is stale or not finite; else give the command to every output."""
-        record, now_ns = self.follower.command, self.clock.monotonic_ns()
+        result, now_ns = computed(self.follower.command), self.clock.monotonic_ns()
         oldest = now + (now_ns - start_ns) / 1e9 - self.parameters.timeout_thr_sec
-        if side := stale_side(self._lateral_stamp, record, oldest):
+        if side := result.stale_side(oldest):
             self.logger.error("refused a stale %s command", side, throttled=True)
             return Outcome.STALE, side
-        self._command = command = to_control(record, self.clock.wall_ns() - now_ns)
-        if not is_finite(command):
-            self.logger.error("refused a command that is not finite: %s", command, throttled=True)
+        if not result.is_finite():
+            self.logger.error("refused a command that is not finite: %s", result, throttled=True)
             return Outcome.NOT_FINITE, "command"
+        self._command = command = result.to_control(self.clock.wall_ns() - now_ns)
         stamp_ns = command.stamp.nanoseconds
         sent = [output.send(command, stamp_ns) for output in self.outputs]
         if any(sent):

@@ -28,13 +28,18 @@ class InputSpec(NamedTuple):
     name: str
     """As the follower and the log name it."""
     topic: TopicEntry
-    decode: Callable[[InputFollower, bytes], Any]
+    decoder: Callable[[InputFollower], Callable[[bytes], Any]]
+    """Makes the function that decodes its samples."""
     offer: Callable[[InputFollower, Any], Refusal]
 
 
-def _decode_trajectory(follower: InputFollower, data: bytes) -> Trajectory:
-    """Decode into the follower's own memory; what does not fit is refused before it is copied."""
-    return decode_trajectory(data, follower.incoming)
+def _plain(decode: Callable[[bytes], Any]) -> Callable[[InputFollower], Callable[[bytes], Any]]:
+    return lambda follower: decode
+
+
+def _into_the_follower(follower: InputFollower) -> Callable[[bytes], Trajectory]:
+    """Decode points into the follower's own memory; too many are refused before any is copied."""
+    return lambda data: decode_trajectory(data, follower.incoming)
 
 
 def _offer_trajectory(follower: InputFollower, message: Trajectory) -> Refusal:
@@ -58,34 +63,20 @@ def _offer_operation_mode(follower: InputFollower, message: codec.OperationMode)
     return follower.offer_operation_mode(message.mode, message.is_autoware_control_enabled)
 
 
-def _ignoring_the_follower(decode: Callable[[bytes], Any]) -> Callable[[InputFollower, bytes], Any]:
-    return lambda _, data: decode(data)
-
-
 INPUTS = (
-    InputSpec("trajectory", topics.TRAJECTORY, _decode_trajectory, _offer_trajectory),
-    InputSpec(
-        "odometry",
-        topics.ODOMETRY,
-        _ignoring_the_follower(codec.decode_odometry),
-        _offer_odometry,
-    ),
-    InputSpec(
-        "steering",
-        topics.STEERING,
-        _ignoring_the_follower(codec.decode_steering),
-        _offer_steering,
-    ),
+    InputSpec("trajectory", topics.TRAJECTORY, _into_the_follower, _offer_trajectory),
+    InputSpec("odometry", topics.ODOMETRY, _plain(codec.decode_odometry), _offer_odometry),
+    InputSpec("steering", topics.STEERING, _plain(codec.decode_steering), _offer_steering),
     InputSpec(
         "acceleration",
         topics.ACCELERATION,
-        _ignoring_the_follower(codec.decode_acceleration),
+        _plain(codec.decode_acceleration),
         _offer_acceleration,
     ),
     InputSpec(
         "operation mode",
         topics.OPERATION_MODE,
-        _ignoring_the_follower(codec.decode_operation_mode),
+        _plain(codec.decode_operation_mode),
         _offer_operation_mode,
     ),
 )
@@ -108,7 +99,7 @@ class Input:
         """Monotonic time [s] of the tick that accepted the newest sample in force."""
         self.writer_guid = b""
         """Writer of the sample that was taken last."""
-        self._decode = spec.decode
+        self._decode = spec.decoder(follower)
         self._offer = spec.offer
         self._follower = follower
         self._logger = logger
@@ -120,7 +111,7 @@ class Input:
             return True
         self.writer_guid = sample.writer_guid
         try:
-            verdict = self._offer(self._follower, self._decode(self._follower, sample.data))
+            verdict = self._offer(self._follower, self._decode(sample.data))
         except DecodeError as error:
             return self._refuse(error.reason, str(error))
         if verdict:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 from types import TracebackType
@@ -64,17 +65,20 @@ class Node:
         """
         timer = self.platform.new_timer(period_s)
         self._wake = timer.wake
-        end_ns = None if duration_s is None else self.clock.monotonic_ns() + int(duration_s * 1e9)
+        last_ns = self.clock.monotonic_ns()
+        end_ns = math.inf if duration_s is None else last_ns + (duration_s - period_s / 2) * 1e9
         self.logger.info("%s is live, with a period of %g ms", self.name, period_s * 1e3)
         with self.platform.on_stop(self.stop), quiet_garbage_collector():
-            while not self.stopping:
+            while not self.stopping and last_ns < end_ns:
                 due = timer.wait()
-                if due is None or (end_ns is not None and due.due_ns > end_ns):
-                    break
+                if due is None:
+                    continue
                 self.on_tick(due)
+                last_ns = due.due_ns
                 if timer.ticks % COLLECT_EVERY == 0:
                     gc.collect(1)
         self._wake = self._nothing
+        self.logger.info("%s ends after %d ticks, %d missed", self.name, timer.ticks, timer.skipped)
         timer.close()
 
     def stop(self) -> None:
