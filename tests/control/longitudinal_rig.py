@@ -22,6 +22,7 @@ from safety_island.control.records import (
     new_points,
     pack_parameters,
 )
+from safety_island.control.status import LongitudinalState
 from tests.golden.harness import BASE_YAML, parameters_from
 
 PERIOD = 0.15
@@ -109,4 +110,13 @@ def cruise(v: float = 1.0, **overrides: Any) -> Rig:
     """A rig on a 100 m road at one speed, with no wait for the steering."""
     rig = Rig(**({"enable_keep_stopped_until_steer_convergence": False} | overrides))
     rig.road([0.0, 50.0, 100.0], v)
+    return rig
+
+
+def rig_in(state: LongitudinalState, **overrides: Any) -> Rig:
+    """A rig in a state, on a 20 m road at 2 m/s with a stop point at 10 m."""
+    rig = Rig(**overrides)
+    x = [0.5 * i for i in range(41)]
+    rig.road(x, [0.0 if each >= 10.0 else 2.0 for each in x])
+    rig.s.state = state
     return rig

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from safety_island.control.points import interpolate_pose
+from safety_island.control.point_list import interpolate_pose
 from safety_island.control.records import POINT, Records
 from safety_island.control.trajectory_walk import pitch_ahead, pose_ahead, stop_distance, stop_index
 

@@ -25,11 +25,31 @@ from tests.golden.harness import (
     run_paths,
 )
 
-TRACED = (
-    "lon_state stop_dist target_vel nearest_vel target_acc pred_vel slope_angle err_vel_filtered "
-    "pid_p pid_i pid_d ff_scale acc_ff acc_pid_applied acc_acc_limited acc_jerk_limited "
-    "acc_fb_applied acc_slope_applied trans_dev rot_dev prev_raw_acc prev_raw_vel prev_acc"
-).split()
+TRACED = [
+    "lon_state",
+    "stop_dist",
+    "target_vel",
+    "nearest_vel",
+    "target_acc",
+    "pred_vel",
+    "slope_angle",
+    "err_vel_filtered",
+    "pid_p",
+    "pid_i",
+    "pid_d",
+    "ff_scale",
+    "acc_ff",
+    "acc_pid_applied",
+    "acc_acc_limited",
+    "acc_jerk_limited",
+    "acc_fb_applied",
+    "acc_slope_applied",
+    "trans_dev",
+    "rot_dev",
+    "prev_raw_acc",
+    "prev_raw_vel",
+    "prev_acc",
+]
 """Columns of the recordings that the trace holds under the same name."""
 
 COMMANDED = ("velocity", "acceleration")
@@ -46,7 +66,11 @@ Columns = dict[str, npt.NDArray[np.float64]]
 def replay(run: Run) -> Columns:
     """Replay a run with the recorded convergence of the previous tick."""
     longitudinal_step.prepare()
-    params, points, work = pack_parameters(parameters_of(run)), new_points(), new_longitudinal_work()
+    params, points, work = (
+        pack_parameters(parameters_of(run)),
+        new_points(),
+        new_longitudinal_work(),
+    )
     inputs, state = first_inputs(), new_longitudinal_state()
     command, trace = np.zeros(1, COMMAND), np.zeros(1, TRACE)
     reset_longitudinal_trace(trace)
@@ -64,7 +88,8 @@ def replay(run: Run) -> Columns:
 def difference(run: Run, result: Columns) -> str:
     """The first tick that differs, with every column that does; empty when none does."""
     published = run.output["published"] > 0
-    first, lines = run.ticks, []
+    first = run.ticks
+    lines: list[str] = []
     for name in (name for name in (*TRACED, *COMMANDED) if name in run.output):
         tolerance = TOLERANCE_COMMAND if name in COMMANDED else TOLERANCE
         same = np.isclose(result[name], run.output[name], rtol=0, atol=tolerance, equal_nan=True)

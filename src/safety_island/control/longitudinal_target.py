@@ -8,14 +8,8 @@ from safety_island.control.geometry import clip, normalize_angle, yaw_of
 from safety_island.control.kernel import kernel
 from safety_island.control.longitudinal_history import predict_after_delay
 from safety_island.control.pid import pid_reset
-from safety_island.control.points import (
-    copy_distinct,
-    distance_2d,
-    insert_point,
-    interpolate_at,
-    nearest_index,
-    segment_of,
-)
+from safety_island.control.point_list import copy_distinct, insert_point, interpolate_at
+from safety_island.control.points import distance_2d, nearest_index, segment_of
 from safety_island.control.trajectory_walk import pose_ahead, stop_distance
 
 MIN_RUN = 0.01

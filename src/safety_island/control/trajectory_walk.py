@@ -5,7 +5,8 @@ import math
 import numpy as np
 
 from safety_island.control.kernel import kernel
-from safety_island.control.points import distance_2d, distance_3d, interpolate_pose
+from safety_island.control.point_list import interpolate_pose
+from safety_island.control.points import distance_2d, distance_3d
 
 STANDING = 1e-3
 """A point slower than this [m/s] is a stop point."""
