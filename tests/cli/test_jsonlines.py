@@ -1,0 +1,61 @@
+"""JSON lines never wait for their reader."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterator
+
+import pytest
+
+from safety_island.cli.jsonlines import MAX_LINE, JsonLines, plain
+
+Pipe = tuple[int, int]
+
+
+@pytest.fixture
+def pipe() -> Iterator[Pipe]:
+    reading, writing = os.pipe()
+    yield reading, writing
+    os.close(writing)
+
+
+def test_one_object_a_line(pipe: Pipe) -> None:
+    lines = JsonLines(pipe[1])
+    lines.write("tick", {"number": 1, "ages_s": {"odometry": 0.1234567}})
+    lines.write("end", {})
+    first, second = os.read(pipe[0], 1000).decode().splitlines()
+    assert json.loads(first) == {"event": "tick", "number": 1, "ages_s": {"odometry": 0.123457}}
+    assert json.loads(second) == {"event": "end"}
+    os.close(pipe[0])
+
+
+def test_full_pipe_drops_instead_of_waiting(pipe: Pipe) -> None:
+    lines = JsonLines(pipe[1])
+    for _ in range(200):
+        lines.write("tick", {"text": "x" * 2000})
+    assert 0 < lines.dropped < 200
+    kept = 0
+    os.set_blocking(pipe[0], False)
+    for line in os.read(pipe[0], 1 << 20).splitlines():
+        kept += json.loads(line)["event"] == "tick"
+    assert kept + lines.dropped == 200
+    os.close(pipe[0])
+
+
+def test_line_that_could_block_half_written_is_dropped(pipe: Pipe) -> None:
+    lines = JsonLines(pipe[1])
+    lines.write("tick", {"text": "x" * MAX_LINE})
+    assert lines.dropped == 1
+    os.close(pipe[0])
+
+
+def test_reader_that_went_away(pipe: Pipe) -> None:
+    os.close(pipe[0])
+    with pytest.raises(BrokenPipeError):
+        JsonLines(pipe[1]).write("tick", {})
+
+
+def test_json_has_no_nan() -> None:
+    values = {"a": float("nan"), "b": [float("inf"), 1, True, "x"], "c": (1.0000000001,)}
+    assert plain(values) == {"a": None, "b": [None, 1, True, "x"], "c": [1.0]}

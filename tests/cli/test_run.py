@@ -1,0 +1,130 @@
+"""``island run`` as a process: refuses what cannot work, waits, reports, ends when told to."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+import signal
+import subprocess
+import sys
+from typing import Any
+
+import numpy as np
+import pytest
+
+from safety_island.cli.main import main
+from safety_island.cli.run_report import RunReport, percentile, tick_values
+from safety_island.control.records import TRACE
+from safety_island.messages.outputs import Control
+from safety_island.messages.wire import Time
+from safety_island.node import Outcome, TickReport
+from safety_island.node.inputs import INPUTS
+from safety_island.platform import load
+
+RUN = (sys.executable, "-m", "safety_island", "run")
+COMMAND = Control(Time(1, 2), Time(1, 2), 0.1, 0.2, 3.0, 0.5)
+
+
+def tick(outcome: Outcome = Outcome.PUBLISHED, **values: Any) -> TickReport:
+    published = outcome is Outcome.PUBLISHED
+    report = TickReport(
+        number=1,
+        now=5.0,
+        outcome=outcome,
+        detail="" if published else "odometry",
+        lateness_s=0.001,
+        skipped=0,
+        tick_time_s=0.002,
+        lateral_time_s=0.001,
+        longitudinal_time_s=0.0005,
+        ages_s=(0.1,) * (len(INPUTS) - 1) + (math.inf,),
+        refused=0,
+        command=COMMAND if published else None,
+    )
+    return report._replace(**values)
+
+
+class Traced:
+    trace = np.zeros(1, TRACE)
+
+
+def reporter() -> RunReport:
+    return RunReport(Traced(), load("sim").logger, lambda: 1.25, None)
+
+
+def test_report_counts() -> None:
+    report = reporter()
+    report(tick(Outcome.WAITING_FOR_INPUT, skipped=2))
+    assert report.first_control_s is None
+    for time in (0.001, 0.004, 0.002):
+        report(tick(tick_time_s=time, refused=1))
+    summary = report.summary()
+    assert summary["ticks"] == 4
+    assert summary["published"] == 3
+    assert summary["missed_ticks"] == 2
+    assert summary["refused_samples"] == 3
+    assert summary["first_control_s"] == 1.25
+    assert summary["tick_s"] == {"median": 0.002, "p99": 0.004, "max": 0.004}
+
+
+def test_values_of_a_tick() -> None:
+    values = tick_values(tick(), Traced.trace)
+    assert values["outcome"] == "PUBLISHED"
+    assert values["steering_tire_angle"] == 0.1
+    assert values["state"] == "DRIVE"
+    assert values["ages_s"]["operation mode"] == math.inf
+    waiting = tick_values(tick(Outcome.WAITING_FOR_INPUT), Traced.trace)
+    assert waiting["detail"] == "odometry"
+    assert "state" not in waiting
+
+
+def test_percentile_is_the_nearest_rank() -> None:
+    values = [float(value) for value in range(1, 101)]
+    assert [percentile(values, p) for p in (1, 50, 99, 100)] == [1.0, 50.0, 99.0, 100.0]
+    assert percentile([], 50) is None
+    assert percentile([7.0], 1) == 7.0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "text"),
+    [
+        (["--domain", "233"], "'233' is not a DDS domain id"),
+        (["--interface", "nowhere0"], "nowhere0"),
+        (["--params", "nosuch"], "parameter set 'nosuch' is not shipped"),
+        (["--params", "/nowhere.yaml"], "/nowhere.yaml: cannot be read"),
+        (["--platform", "zephyr"], "invalid choice: 'zephyr'"),
+    ],
+)
+def test_refused(
+    arguments: list[str], text: str, capsys: pytest.CaptureFixture[str], domain_id: int
+) -> None:
+    assert main(["run", "--domain", str(domain_id), *arguments]) == 2
+    errors = [line for line in capsys.readouterr().err.splitlines() if line.startswith("island:")]
+    assert len(errors) == 1
+    assert text in errors[0]
+
+
+@pytest.mark.live
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_ends_in_order_when_told_to(domain_id: int, number: signal.Signals) -> None:
+    command = [*RUN, "--domain", str(domain_id), "--period", "0.03", "--json"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        assert process.stdout is not None
+        assert json.loads(process.stdout.readline())["outcome"] == "WAITING_FOR_INPUT"
+        process.send_signal(number)
+        rest, _ = process.communicate(timeout=60)
+    assert process.returncode == 0
+    summary = json.loads(rest.splitlines()[-1])
+    assert summary["event"] == "summary"
+    assert summary["published"] == 0
+
+
+@pytest.mark.live
+def test_ends_after_its_duration_and_says_what_it_waits_for(domain_id: int) -> None:
+    command = [*RUN, "--domain", str(domain_id), "--duration", "0.5"]
+    process = subprocess.run(command, capture_output=True, text=True, timeout=300)
+    assert (process.returncode, process.stdout) == (0, "")
+    for name in (spec.name for spec in INPUTS):
+        assert f"Waiting for {name} data" in process.stderr
+    assert re.search(r" \d+ ticks, 0 commands", process.stderr)
