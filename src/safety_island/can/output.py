@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import struct
 from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
-from safety_island.can.bus import BusLink, Delivery
-from safety_island.can.command import Cause, Command
+from safety_island.can.bus import BusLink, Delivery, MonotonicNs
+from safety_island.can.command import Cause, ControlFields, as_published
 from safety_island.can.counters import CanCounters
 from safety_island.can.encoder import Rejection, Triple, encode
 from safety_island.can.frames import FRAMES
@@ -16,8 +15,6 @@ from safety_island.can.output_log import OutputLog
 from safety_island.can.receiver import SEQUENCE_MODULUS
 from safety_island.can.recovery import Recovery, Remedy
 from safety_island.platform.interfaces import CanFrame, CanResult, Logger
-
-_SINGLES = struct.Struct("<5f")
 
 Recorder = Callable[[int, Iterable[CanFrame]], None]
 """Told the stamp [ns] and the frames that were handed to the bus."""
@@ -31,67 +28,72 @@ class Sent(NamedTuple):
     """None: all three frames were handed over."""
 
 
-def as_published(command: Command) -> Command:
-    """Return the command in single precision, as the DDS message carries it.
-
-    So the frames agree with ``control_cmd`` to the last scaled digit.
-    """
-    try:
-        numbers = _SINGLES.unpack(_SINGLES.pack(*command[:5]))
-    except OverflowError:  # beyond single precision, hence beyond int32: the encoder rejects it
-        return command
-    return Command._make((*numbers, *command[5:]))
-
-
 class CanOutput:
     """Sends commands over one bus; every failure is counted, told once, and recovered from.
 
     ``link``: the bus; None in a mode without CAN, or where the target has no bus and DDS goes on
     alone. ``budget_s``: the longest that one command may wait for the bus, at most a tenth of the
-    control period. ``open_failure``: why the bus is not open yet; it is tried again.
+    control period. ``clock``: monotonic [ns], for the back-off. ``open_failure``: why the bus is
+    not open yet; it is tried again.
     """
+
+    name = "CAN"
 
     def __init__(
         self,
         mode: OutputMode,
         link: BusLink | None,
         budget_s: float,
+        clock: MonotonicNs,
         logger: Logger,
         recorder: Recorder | None = None,
         open_failure: str | None = None,
     ) -> None:
         self.mode = mode
         self.counters = CanCounters()
+        self.failed = 0
+        """Commands that did not go out, rejected ones among them."""
+        self.last: Sent | None = None
+        """What became of the last command; None before the first."""
         self._link = link
         self._budget_s = budget_s
+        self._clock = clock
         self._recorder = recorder
         self._sequence = 0
         self._is_renewed = False
         self._recovery = Recovery()
         self._log = OutputLog(logger)
         if open_failure is not None:
-            self._recovery.fail(CanResult.NOT_OPEN, 0.0)
+            self._recovery.fail(CanResult.NOT_OPEN, clock() / 1e9)
             self._log.not_open(open_failure)
 
-    def send(self, command: Command, stamp_ns: int, now_s: float) -> Sent | None:
-        """Send one command, stamped [ns]; ``now_s`` is the monotonic time of the tick.
+    def send(self, command: ControlFields, stamp_ns: int) -> bool:
+        """Send one command, stamped [ns]; True only when all three frames were handed over.
 
-        Returns None when there is no CAN: in ``DDS_ONLY``, or without a bus. Each call uses up a
-        sequence number, also for a rejected command.
+        Never raises. Each call uses up a sequence number, also for a rejected command. Without CAN
+        (``DDS_ONLY``, or no bus) it does nothing.
         """
         if self._link is None or not self.mode.uses_can:
-            return None
+            return False
         sequence = self._sequence
         self._sequence = (sequence + 1) % SEQUENCE_MODULUS
         frames = encode(as_published(command), self.mode, sequence, stamp_ns)
         if isinstance(frames, Rejection):
-            return Sent(sequence, self._reject(frames))
-        delivery = self._deliver(self._link, frames, now_s)
+            cause: Cause | None = self._reject(frames)
+        else:
+            cause = self._send_frames(self._link, frames, stamp_ns)
+        self.failed += cause is not None
+        self.last = Sent(sequence, cause)
+        return cause is None
+
+    def _send_frames(self, link: BusLink, frames: Triple, stamp_ns: int) -> Cause | None:
+        now_s = self._clock() / 1e9
+        delivery = self._deliver(link, frames, now_s)
         if delivery is None:
-            return Sent(sequence, self._fail(0, self._recovery.last))
+            return self._fail(0, self._recovery.last)
         if self._recorder is not None and delivery.sent:
             self._recorder(stamp_ns, frames[: delivery.sent])
-        return Sent(sequence, self._judge(delivery, now_s))
+        return self._judge(delivery, now_s)
 
     def close(self) -> None:
         """Give the bus back."""

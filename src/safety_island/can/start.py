@@ -34,12 +34,12 @@ def start_output(
     """
     budget_s = BUDGET_SHARE * period_s
     if not mode.uses_can:
-        return CanOutput(mode, None, budget_s, logger)
+        return CanOutput(mode, None, budget_s, clock, logger)
     if spec is None:
         missing = f"output mode {mode.name} has no CAN bus: name one, for example socketcan:can0"
         if not mode.uses_dds:
             raise ConfigurationError(missing)
-        return CanOutput(mode, None, budget_s, logger, open_failure=missing)
+        return CanOutput(mode, None, budget_s, clock, logger, open_failure=missing)
     link = new_link(spec, clock)
     failure = None
     try:
@@ -49,4 +49,4 @@ def start_output(
             link.close()
             raise CanUnavailableError(f"{error} (output mode {mode.name} needs it)") from error
         failure = str(error)
-    return CanOutput(mode, link, budget_s, logger, recorder, failure)
+    return CanOutput(mode, link, budget_s, clock, logger, recorder, failure)
