@@ -97,7 +97,7 @@ def test_begins_and_ends_on_a_straight(course: Course) -> None:
 
 def test_lane_change_is_exactly_a_lane() -> None:
     y = load_course("lane-change").legs[0].points["y"]
-    assert y[round(165.0 / SPACING) + round(LEAD_IN / SPACING)] == pytest.approx(3.5, abs=1e-4)
+    assert y[round(130.0 / SPACING) + round(LEAD_IN / SPACING)] == pytest.approx(3.5, abs=1e-4)
 
 
 def test_u_turn_ends_where_it_looks_back() -> None:

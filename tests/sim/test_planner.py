@@ -32,7 +32,7 @@ def _drive_to(planner: Planner, now: float, station: float) -> None:
 @pytest.mark.parametrize("aside", [-1.0, -0.2, 0.0, 0.3])
 def test_locates_beside_the_path(aside: float) -> None:
     planner = Planner(load_course("s-curve"))
-    for station in np.arange(0.0, 300.0, 7.5):
+    for station in np.arange(0.0, 270.0, 7.5):
         place = planner.update(0.0, *_at(planner, station, aside), 5.0)
         assert place.lateral_error == pytest.approx(aside, abs=0.01)
         assert place.station == pytest.approx(station, abs=0.03)
@@ -73,21 +73,21 @@ def test_window_ends_at_the_stop() -> None:
 
 def test_goes_on_after_the_dwell() -> None:
     planner = Planner(load_course("stop-and-go"), dwell=3.0)
-    assert planner.stop_station == 75.0
-    _drive_to(planner, 0.0, 75.0)
+    assert planner.stop_station == 50.0
+    _drive_to(planner, 0.0, 50.0)
     assert planner.legs_done == 1
     assert planner.stop_errors == pytest.approx([0.0])
-    planner.update(2.9, *_at(planner, 75.0), 0.0)
-    assert planner.stop_station == 75.0
-    planner.update(3.0, *_at(planner, 75.0), 0.0)
-    assert planner.stop_station == 145.0
+    planner.update(2.9, *_at(planner, 50.0), 0.0)
+    assert planner.stop_station == 50.0
+    planner.update(3.0, *_at(planner, 50.0), 0.0)
+    assert planner.stop_station == 100.0
     assert (planner.window()["v"][:-1] > 0.0).all()
-    assert planner.place.station == pytest.approx(75.0)
+    assert planner.place.station == pytest.approx(50.0)
 
 
 def test_standing_far_from_the_stop_is_no_stop() -> None:
     planner = Planner(load_course("stop-and-go"))
-    _drive_to(planner, 0.0, 60.0)
+    _drive_to(planner, 0.0, 45.0)
     assert planner.legs_done == 0
 
 
