@@ -13,6 +13,7 @@ from cyclonedds.topic import Topic
 
 from safety_island.dds import binding, opaque
 from safety_island.dds.errors import DdsError
+from safety_island.dds.names import ros_topic_name
 from safety_island.dds.opaque import OpaqueTopic
 from safety_island.dds.qos import Qos, cyclone_qos
 from safety_island.dds.types import type_hash_data
@@ -43,6 +44,7 @@ class Publisher:
         qos: Qos,
         on_close: Callable[[Publisher], None],
     ) -> None:
+        self.topic = ros_topic_name(topic.name)
         self.type_name = type_name
         self.qos = qos
         self.sent = 0
@@ -95,6 +97,7 @@ class Subscription:
         on_close: Callable[[Subscription], None],
         ignore_own: bool = False,
     ) -> None:
+        self.topic = ros_topic_name(topic.name)
         self.type_name = type_name
         self.qos = qos
         self.received = 0

@@ -17,6 +17,7 @@ from safety_island.dds.discovery import PUBLICATIONS, SUBSCRIPTIONS, Endpoints, 
 from safety_island.dds.domain import close_domain, open_domain
 from safety_island.dds.endpoints import Publisher, Subscription
 from safety_island.dds.errors import DdsError
+from safety_island.dds.mismatch import why_not
 from safety_island.dds.names import dds_topic_name
 from safety_island.dds.opaque import OpaqueTopic
 from safety_island.dds.presence import PARTICIPANT_USER_DATA, check_node_name, presence
@@ -100,6 +101,19 @@ class Participant:
     def subscriptions(self, topic: str) -> list[RemoteEndpoint]:
         """Return the subscriptions of other participants on a ROS topic, whatever their type."""
         return self._found[SUBSCRIPTIONS].on(topic)
+
+    def mismatches(self) -> list[str]:
+        """Say, one line each, which remote endpoints on our topics do not match and why."""
+        found = []
+        for subscription in self._subscriptions:
+            for remote in self.publications(subscription.topic):
+                found.append(
+                    why_not(remote, subscription.type_name, subscription.qos, publisher=True)
+                )
+        for publisher in self._publishers:
+            for remote in self.subscriptions(publisher.topic):
+                found.append(why_not(remote, publisher.type_name, publisher.qos, publisher=False))
+        return [line for line in found if line]
 
     def close(self) -> None:
         """Leave the domain at once; others are told. A second call does nothing."""
