@@ -9,15 +9,15 @@ import daqp
 import numpy as np
 import numpy.typing as npt
 
+from safety_island.bench import yardstick
 from safety_island.control.qp import QP
-from safety_island.control.qp_yardstick import PROBLEM
 
 Array = npt.NDArray[np.float64]
 Record = npt.NDArray[Any]
 DATA = Path(__file__).parent / "data"
 BOUNDS = ("lb", "ub", "lbA", "ubA")
 RECORDED = {
-    "s_curve": PROBLEM,  # no bound is touched
+    "s_curve": Path(yardstick.__file__).parent / "data" / "yardstick.npz",  # no bound is touched
     "lane_change": DATA / "qp_lane_change.npz",  # the same, worse conditioned
     "u_turn": DATA / "qp_u_turn.npz",  # 44 bounds are touched
 }

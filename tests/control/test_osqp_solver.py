@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from safety_island.bench import yardstick
 from safety_island.control.osqp_solver import OsqpSolver
-from safety_island.control.qp_yardstick import yardstick, yardstick_problem
 from safety_island.control.status import MpcStatus
 from safety_island.errors import ConfigurationError
 from tests.control.qp_problems import RECORDED, random_problem, recorded, smooth_hessian
@@ -92,8 +92,8 @@ def test_horizon_out_of_range_is_refused(horizon: int) -> None:
 
 def test_yardstick_is_a_cold_solve_of_the_recorded_problem() -> None:
     pytest.importorskip("osqp")
-    problem = yardstick_problem()
+    problem = yardstick.problem()
     q, n = recorded("s_curve")
     np.testing.assert_array_equal(problem.hessian.toarray(), np.triu(q[0].H[:n, :n]))
     assert problem.rows.nnz == 3 * n - 1
-    yardstick(problem)
+    assert yardstick.measure_us(problem) > 0.0

@@ -31,7 +31,7 @@ from safety_island.control.longitudinal_state import (
     reset_longitudinal_trace,
 )
 from safety_island.control.params import Parameters
-from safety_island.control.qp import QP
+from safety_island.control.qp_records import QP
 from safety_island.control.records import (
     COMMAND,
     INPUTS,

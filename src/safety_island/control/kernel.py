@@ -22,7 +22,7 @@ JIT = os.environ.get("SAFETY_ISLAND_JIT", "1") != "0"
 FLAGS: dict[str, Any] = {"error_model": "numpy", "fastmath": False, "_nrt": False}
 
 ENTRIES: list[Entry] = []
-"""Every kernel that is called from outside, in the order of definition."""
+"""Every kernel that the island calls, in the order of definition."""
 
 
 def cache_folder() -> Path:
@@ -35,10 +35,10 @@ def cache_folder() -> Path:
     digest = hashlib.sha256(f"{numba.__version__} {np.__version__}".encode())
     for source in sorted(Path(__file__).parent.glob("*.py")):
         digest.update(source.read_bytes())
-    root = os.environ.get("SAFETY_ISLAND_CACHE") or os.path.join(
-        os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache"), "safety-island"
-    )
-    return Path(root) / f"kernels-{digest.hexdigest()[:16]}"
+    cache = os.environ.get("XDG_CACHE_HOME")
+    default = (Path(cache) if cache else Path("~/.cache").expanduser()) / "safety-island"
+    root = Path(os.environ.get("SAFETY_ISLAND_CACHE") or default)
+    return root / f"kernels-{digest.hexdigest()[:16]}"
 
 
 def _njit(**options: Any) -> Callable[[Any], Any]:
@@ -62,13 +62,16 @@ class Entry:
     from starting a compilation of seconds in the middle of a run: it is a ``TypeError`` instead.
     """
 
-    def __init__(self, function: Callable[..., int], arguments: tuple[Any, ...]) -> None:
+    def __init__(
+        self, function: Callable[..., int], arguments: tuple[Any, ...], on_demand: bool
+    ) -> None:
         self.name = function.__name__
         self.python = function
         self.arguments = arguments
         self.call: Callable[..., int] = function
         self._dispatcher = _njit(cache=True)(function) if JIT else None
-        ENTRIES.append(self)
+        if not on_demand:
+            ENTRIES.append(self)
 
     def signature(self) -> tuple[Any, ...]:
         """The Numba types of the arguments."""
@@ -88,9 +91,12 @@ class Entry:
             self.call = self._dispatcher
 
 
-def entry(*arguments: Any) -> Callable[[Callable[..., int]], Entry]:
-    """Mark a kernel that the outside calls, with the type of each argument."""
-    return lambda function: Entry(function, arguments)
+def entry(*arguments: Any, on_demand: bool = False) -> Callable[[Callable[..., int]], Entry]:
+    """Mark a kernel that the outside calls, with the type of each argument.
+
+    ``on_demand``: few need it, so it is compiled by whoever calls its ``prepare``, not by ours.
+    """
+    return lambda function: Entry(function, arguments, on_demand)
 
 
 def is_cached() -> bool:

@@ -14,10 +14,10 @@ from safety_island.control.kernel import entry, kernel
 from safety_island.control.lateral_state import LATERAL_STATE
 from safety_island.control.mpc import finish_mpc, prepare_mpc
 from safety_island.control.points import nearest_index
-from safety_island.control.qp import QP
+from safety_island.control.qp_records import QP
 from safety_island.control.records import COMMAND, INPUTS, PARAMS, POINT, TRACE
 from safety_island.control.reference import accept_source, update_reference
-from safety_island.control.solver import solve
+from safety_island.control.solver import solve, tell_solver
 from safety_island.control.status import Mode, MpcStatus
 from safety_island.control.steering_offset import update_offset
 
@@ -134,6 +134,7 @@ def _command_angle(params, inputs, lat, qp, trace, solved, now):
 def _finish(params, points, inputs, lat, qp, command, trace, now, status):
     """Turn the solution, or its failure, into the lateral command."""
     solved = status == _SOLVED
+    tell_solver(qp, trace, status)
     angle, rate = _command_angle(params, inputs, lat, qp, trace, solved, now)
     trace.stopped = _is_stopped(params, points, inputs, lat)
     trace.is_steer_converged = False
@@ -165,19 +166,19 @@ def lateral_step(params, points, inputs, state, qp, command, trace, now):
     lat = state[0]
     status = _prepare(params[0], points, inputs[0], lat, qp[0], trace[0], now)
     if status == _SOLVED:
-        status = solve(params[0], qp[0], trace[0])
+        status = solve(params[0], qp[0])
     if status != _NO_REFERENCE:
         _finish(params[0], points, inputs[0], lat, qp[0], command[0], trace[0], now, status)
     return status
 
 
-@entry(PARAMS, POINT, INPUTS, LATERAL_STATE, QP, TRACE, float)
+@entry(PARAMS, POINT, INPUTS, LATERAL_STATE, QP, TRACE, float, on_demand=True)
 def lateral_prepare(params, points, inputs, state, qp, trace, now):
     """The first part of ``lateral_step``, for a solver that is no kernel."""
     return _prepare(params[0], points, inputs[0], state[0], qp[0], trace[0], now)
 
 
-@entry(PARAMS, POINT, INPUTS, LATERAL_STATE, QP, COMMAND, TRACE, float, int)
+@entry(PARAMS, POINT, INPUTS, LATERAL_STATE, QP, COMMAND, TRACE, float, int, on_demand=True)
 def lateral_finish(params, points, inputs, state, qp, command, trace, now, status):
     """The last part of ``lateral_step``: ``status`` is how the solver ended."""
     _finish(params[0], points, inputs[0], state[0], qp[0], command[0], trace[0], now, status)

@@ -1,41 +1,24 @@
-"""Entries that solve and check a quadratic programme outside the tick (OSQP, benchmark, tests)."""
+"""Entries that solve and check a quadratic programme outside the tick (OSQP, tests)."""
 
 from safety_island.control.kernel import entry
-from safety_island.control.qp import (
-    QP,
-    check_solution,
-    factorize,
-    solve_constrained,
-    solve_unconstrained,
-)
-from safety_island.control.status import MpcStatus
-
-_SOLVED = int(MpcStatus.SOLVED)
+from safety_island.control.qp_check import check_solution
+from safety_island.control.qp_records import QP
+from safety_island.control.solver import solve_within_limits, solve_without_limits
 
 
-@entry(QP, int, int)
+@entry(QP, int, int, on_demand=True)
 def solve_problem(qp, n, max_iterations):
     """Factorize, solve with all constraints and check; returns an MpcStatus."""
-    q = qp[0]
-    status = factorize(q, n)
-    if status == _SOLVED:
-        status = solve_constrained(q, n, max_iterations)
-    if status == _SOLVED:
-        status = check_solution(q, n)
-    return status
+    return solve_within_limits(qp[0], n, max_iterations)
 
 
-@entry(QP, int)
+@entry(QP, int, on_demand=True)
 def solve_problem_without_limits(qp, n):
-    """Factorize and solve without constraints; returns an MpcStatus."""
-    q = qp[0]
-    status = factorize(q, n)
-    if status == _SOLVED:
-        solve_unconstrained(q, n)
-    return status
+    """Factorize, solve without constraints and check; returns an MpcStatus."""
+    return solve_without_limits(qp[0], n)
 
 
-@entry(QP, int)
+@entry(QP, int, on_demand=True)
 def check_problem(qp, n):
     """Check the solution ``u`` that something else found; returns an MpcStatus."""
     return check_solution(qp[0], n)

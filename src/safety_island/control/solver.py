@@ -1,29 +1,56 @@
-"""The choice of solver for the MPC's quadratic programme."""
-
-import math
+"""The choice of solver for the quadratic programme; a solution is checked before it is used."""
 
 from safety_island.control.cholesky import factorize, solve_unconstrained
 from safety_island.control.kernel import kernel
-from safety_island.control.status import MpcStatus
+from safety_island.control.qp import MAX_ITERATIONS, solve_constrained
+from safety_island.control.qp_check import check_solution, check_unconstrained
+from safety_island.control.status import MpcStatus, Solver
 
 _SOLVED = int(MpcStatus.SOLVED)
-_NOT_FINITE = int(MpcStatus.SOLUTION_NOT_FINITE)
+_UNCONSTRAINT_FAST = int(Solver.UNCONSTRAINT_FAST)
 
 
 @kernel
 def solve_without_limits(qp, n):
-    """Solve by Cholesky and ignore every limit, as the firmware's ``unconstraint_fast``."""
+    """Solve by Cholesky and ignore every limit, as the firmware does."""
     status = factorize(qp, n)
     if status != _SOLVED:
         return status
     solve_unconstrained(qp, n)
-    for i in range(n):
-        if not math.isfinite(qp.u[i]):
-            return _NOT_FINITE
-    return _SOLVED
+    qp.qp_iterations = 0
+    qp.qp_active_count = 0
+    return check_unconstrained(qp, n)
 
 
 @kernel
-def solve(params, qp, trace):
+def solve_within_limits(qp, n, max_iterations):
+    """Solve exactly with every limit."""
+    status = factorize(qp, n)
+    if status == _SOLVED:
+        status = solve_constrained(qp, n, max_iterations)
+    return check_solution(qp, n) if status == _SOLVED else status
+
+
+@kernel
+def solve(params, qp):
     """Solve with the chosen solver of our own and check the solution; an MpcStatus."""
-    return solve_without_limits(qp, params.mpc_prediction_horizon)
+    if params.qp_solver_type == _UNCONSTRAINT_FAST:
+        return solve_without_limits(qp, params.mpc_prediction_horizon)
+    return solve_within_limits(qp, params.mpc_prediction_horizon, MAX_ITERATIONS)
+
+
+@kernel
+def tell_solver(qp, trace, status):
+    """Write how the solver ended into the trace."""
+    trace.solver_status = status
+    trace.solver_iterations = qp.qp_iterations
+    trace.active_constraints = qp.qp_active_count
+    trace.residual = qp.qp_residual
+    trace.rate_limited = _touches_rate(qp)
+
+
+@kernel
+def _touches_rate(qp):
+    """Whether the first step of the solution stands at its steering-rate bound."""
+    u = qp.u[0]
+    return u >= qp.ubA[0] - 1e-9 or u <= qp.lbA[0] + 1e-9

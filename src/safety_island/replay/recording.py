@@ -24,7 +24,10 @@ Table = npt.NDArray[np.float64]
 ODOMETRY, STEERING, ACCELERATION, OPERATION_MODE = 1, 2, 4, 8
 """Bits of ``deliver_mask``."""
 
-STATE_COLUMNS = "t x y z qx qy qz qw vx vy wz ax steer mode enabled".split()
+STATE_COLUMNS = (
+    *("t", "x", "y", "z", "qx", "qy", "qz", "qw"),
+    *("vx", "vy", "wz", "ax", "steer", "mode", "enabled"),
+)
 CONTRACT_COLUMNS = (
     "t",
     "published",
@@ -36,9 +39,9 @@ CONTRACT_COLUMNS = (
 """The columns of ``output`` that a replay must reproduce."""
 
 _ARRAYS = (
-    "state state_cols deliver_mask path_points path_offsets traj_select output output_cols "
-    "params_json"
-).split()
+    *("state", "state_cols", "deliver_mask", "path_points", "path_offsets"),
+    *("traj_select", "output", "output_cols", "params_json"),
+)
 _POINT_COLUMNS = 13
 
 
