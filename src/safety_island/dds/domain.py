@@ -93,7 +93,8 @@ def _check_user_xml(part: str) -> None:
         root = ElementTree.fromstring(text)
     except ElementTree.ParseError as problem:
         line, column = problem.position
-        raise ConfigurationError(f"{where}:{line}:{column + 1}: not XML: {problem}") from None
+        what = str(problem).partition(":")[0]
+        raise ConfigurationError(f"{where}:{line}:{column + 1}: not XML: {what}") from None
     for element in root.iter():
         if element.tag.rpartition("}")[2].lower() == "peer":
             check_peer(element.get("Address") or element.get("address") or "")
