@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import termios
 from collections.abc import Iterator
 
 import can
@@ -44,8 +45,11 @@ def _chain(error: BaseException | None) -> Iterator[BaseException]:
 
 
 def _errno(error: BaseException) -> int | None:
-    code = error.error_code if isinstance(error, can.CanError) else getattr(error, "errno", None)
-    return code if isinstance(code, int) else None
+    if isinstance(error, can.CanError):
+        return error.error_code
+    if isinstance(error, termios.error):  # of a serial line, and no OSError
+        return int(error.args[0])
+    return error.errno if isinstance(error, OSError) else None
 
 
 def result_of(error: BaseException, budget_is_spent: bool) -> CanResult:

@@ -14,7 +14,7 @@ from safety_island.can.frames import COMMAND_IDS, FRAMES
 from safety_island.can.python_can_bus import check_spec, close_bus, discard_output, open_bus
 from safety_island.can.socketcan import COMMAND_FILTERS, is_held_back, refuse_without_carrier
 from safety_island.can.spec import Backend, BusSpec
-from safety_island.platform.interfaces import CanFrame, CanResult
+from safety_island.platform.interfaces import CanError, CanFrame, CanResult
 
 POLL_LIMIT = 256
 """Frames that one poll reads at most; the rest waits for the next."""
@@ -35,12 +35,21 @@ class PythonCanDevice:
         self._backend = backend
         self._clock = clock
         self._bus: can.BusABC | None = None
+        self._draining: can.BusABC | None = None
         self._sent: deque[CanFrame] = deque(maxlen=_ECHOES_KEPT)
 
     def open(self) -> None:
-        """Open the bus. Raises CanError."""
+        """Open the bus. Raises CanError, also while the kernel holds frames of an older command.
+
+        The kernel keeps a frame when its socket is closed. Were a new one opened, commands would
+        pile up behind a bus that stands still, and all leave when it moves again.
+        """
         if self._backend.kernel_queue:
             refuse_without_carrier(self.spec.channel)
+        if self._is_held_back(self._draining):
+            raise CanError(f"CAN bus '{self.spec}' still holds frames of an older command")
+        _close(self._draining)
+        self._draining = None
         self._bus = open_bus(self.spec, **_defaults(self._backend))
 
     def send(self, frame: CanFrame, budget_s: float) -> CanResult:
@@ -50,7 +59,7 @@ class PythonCanDevice:
         """
         if self._bus is None:
             return CanResult.NOT_OPEN
-        if frame.arbitration_id == _FIRST_ID and self._is_held_back():
+        if frame.arbitration_id == _FIRST_ID and self._is_held_back(self._bus):
             return CanResult.QUEUE_FULL
         message = can.Message(
             arbitration_id=frame.arbitration_id, data=frame.data, is_extended_id=False
@@ -92,8 +101,10 @@ class PythonCanDevice:
         """Close the bus; a second call does nothing."""
         bus, self._bus = self._bus, None
         self._sent.clear()
-        if bus is not None:
-            close_bus(bus)
+        if self._is_held_back(bus):
+            self._draining = bus
+        else:
+            _close(bus)
 
     def _events(self, message: can.Message) -> list[BusEvent]:
         if message.is_error_frame:
@@ -107,9 +118,13 @@ class PythonCanDevice:
                 return []
         return [BusEvent(EventKind.FOREIGN_COMMAND, message.arbitration_id)]
 
-    def _is_held_back(self) -> bool:
-        driver: Any = self._bus
-        return self._backend.kernel_queue and is_held_back(driver.socket)
+    def _is_held_back(self, bus: Any) -> bool:
+        return bus is not None and self._backend.kernel_queue and is_held_back(bus.socket)
+
+
+def _close(bus: can.BusABC | None) -> None:
+    if bus is not None:
+        close_bus(bus)
 
 
 def _defaults(backend: Backend) -> dict[str, Any]:
