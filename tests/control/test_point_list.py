@@ -68,6 +68,22 @@ def test_the_orientation_takes_the_shorter_way(ratio: float) -> None:
     assert math.cos(turned - expected) == pytest.approx(1.0, abs=1e-15)
 
 
+def test_the_same_orientation_with_the_other_sign_is_kept() -> None:
+    path = points([(0, 0), (1, 0)], [1.0, 1.0])
+    path[1].qz, path[1].qw = -path[1].qz, -path[1].qw
+    out: Records = np.zeros(1, POINT)
+    interpolate_pose(path[0], path[1], 0.5, out[0])
+    assert (out[0].qz, out[0].qw) == pytest.approx((math.sin(0.5), math.cos(0.5)), abs=1e-15)
+
+
+def test_insertion_does_not_look_beyond_the_list() -> None:
+    path = points([(0, 0), (1, 0), (1, 0), (1, 0)])
+    new: Records = np.zeros(1, POINT)
+    new[0].x, new[0].v = 1.0, 5.0
+    assert insert_point(path, 2, 1, new[0]) == 2
+    assert list(path["v"][:2]) == [0.0, 5.0]
+
+
 def test_copying_leaves_out_what_overlaps_the_point_before() -> None:
     path = points([(0, 0), (0, 9e-9), (1, 0), (1, 0), (1, 0), (2, 0)])
     out: Records = np.zeros(8, POINT)

@@ -35,9 +35,10 @@ def test_the_body_pitch_is_positive_uphill_whatever_the_heading(yaw: float, pitc
     assert body_pitch(u.qx, u.qy, u.qz, u.qw) == pytest.approx(pitch, abs=1e-15)
 
 
-def test_a_vertical_body_has_a_pitch_of_a_quarter_turn() -> None:
-    side = math.sqrt(0.5) + 1e-9
-    assert body_pitch(0.0, -side, 0.0, side) == pytest.approx(math.pi / 2)
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_vertical_body_has_a_pitch_of_a_quarter_turn(sign: float) -> None:
+    side = math.sqrt(0.5) + 1e-9  # a little beyond a unit quaternion
+    assert body_pitch(0.0, -sign * side, 0.0, side) == pytest.approx(sign * math.pi / 2)
 
 
 @pytest.mark.parametrize("source", ["raw_pitch", "trajectory_pitch", "trajectory_adaptive"])
