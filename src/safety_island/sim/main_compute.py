@@ -1,0 +1,186 @@
+"""A stand-in for Autoware on its DDS domain: planner, vehicle, operation mode, command gate."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from types import TracebackType
+from typing import Any, Protocol
+
+from safety_island.control.status import Mode
+from safety_island.dds import topics
+from safety_island.dds.config import DdsConfig
+from safety_island.dds.endpoints import Publisher
+from safety_island.dds.participant import Participant
+from safety_island.dds.qos import DEFAULT
+from safety_island.messages.errors import DecodeError
+from safety_island.messages.inputs import (
+    Acceleration,
+    Odometry,
+    OperationMode,
+    Steering,
+    encode_acceleration,
+    encode_odometry,
+    encode_operation_mode,
+    encode_steering,
+)
+from safety_island.messages.outputs import decode_control
+from safety_island.messages.trajectory import encode_trajectory
+from safety_island.messages.wire import Time
+from safety_island.platform.interfaces import Clock
+from safety_island.sim.courses import DEFAULT_COURSE, load_course
+from safety_island.sim.world import World
+
+NODE_NAME = "main_compute"
+PERIOD_NS = 25_000_000
+"""The vehicle publishes at 40 Hz."""
+PLAN_EVERY = 4
+"""The planner publishes at 10 Hz, and so does the report."""
+MAP, BODY = "map", "base_link"
+
+Report = Callable[[str, Mapping[str, Any]], None]
+"""Told an event and its values: ``status`` ten times a second, ``summary`` at the end."""
+
+
+class StopEvent(Protocol):
+    """What tells a loop to end; a ``threading.Event`` does."""
+
+    def is_set(self) -> bool:
+        """Whether to end."""
+
+
+@dataclass(frozen=True)
+class MainComputeOptions:
+    """The command line of the stand-in."""
+
+    domain: int = topics.MAIN_COMPUTE_DOMAIN
+    course: str = DEFAULT_COURSE
+    repeat: bool = False
+    """Drive lap after lap instead of ending after the last stop."""
+    engage: bool = True
+    """Engage autonomous mode when commands come."""
+    duration_s: float = 0.0
+    """End after this time [s], wherever the vehicle is; 0: when the course is driven."""
+    dds: DdsConfig = field(default_factory=lambda: DdsConfig(loopback_only=True))
+
+
+class MainCompute:
+    """The topics of the stand-in around a world; a context manager."""
+
+    def __init__(self, world: World, participant: Participant, clock: Clock) -> None:
+        self.world, self.clock = world, clock
+        self.refused = 0
+        self._participant = participant
+        self._odometry = self._publisher(topics.ODOMETRY)
+        self._steering = self._publisher(topics.STEERING)
+        self._acceleration = self._publisher(topics.ACCELERATION)
+        self._trajectory = self._publisher(topics.TRAJECTORY)
+        self._mode = self._publisher(topics.OPERATION_MODE)
+        control = topics.CONTROL
+        # Volatile: the last command of an island that is gone must not move the vehicle.
+        self._control = participant.subscription(control.name, control.type_name, DEFAULT)
+        self._told_mode: Mode | None = None
+
+    def take_command(self, timeout_s: float) -> None:
+        """Wait at most ``timeout_s`` [s] for a command and hand the newest one to the world."""
+        if not self._participant.wait(timeout_s):
+            return
+        sample = self._control.take_newest()
+        if sample is None:
+            return
+        try:
+            command = decode_control(sample.data)
+        except DecodeError:
+            self.refused += 1
+            return
+        now = self.clock.monotonic_ns() * 1e-9
+        self.world.offer_command(now, command.steering_tire_angle, command.acceleration)
+
+    def publish_vehicle(self) -> None:
+        """Publish mode (when it changed), steering, acceleration and odometry of this moment."""
+        world, plant = self.world, self.world.plant
+        stamp = Time.from_nanoseconds(self.clock.wall_ns())
+        if world.mode is not self._told_mode:
+            self._told_mode = world.mode
+            mode = OperationMode(stamp, world.mode, world.mode is Mode.AUTONOMOUS)
+            self._mode.write(encode_operation_mode(mode))
+        self._steering.write(encode_steering(Steering(stamp, plant.steering)))
+        felt = (plant.acceleration, 0.0, 0.0, 0.0, 0.0, 0.0)
+        self._acceleration.write(encode_acceleration(Acceleration(stamp, BODY, *felt)))
+        turning = (0.0, 0.0, plant.yaw_rate)
+        odometry = Odometry(stamp, MAP, BODY, *world.pose(), plant.speed, 0.0, 0.0, *turning)
+        self._odometry.write(encode_odometry(odometry))
+
+    def publish_plan(self) -> None:
+        """Publish the trajectory ahead."""
+        stamp = Time.from_nanoseconds(self.clock.wall_ns())
+        self._trajectory.write(encode_trajectory(stamp, MAP, self.world.planner.window()))
+
+    def close(self) -> None:
+        """Leave the domain."""
+        self._participant.close()
+
+    def __enter__(self) -> MainCompute:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def _publisher(self, topic: topics.TopicEntry) -> Publisher:
+        return self._participant.publisher(topic.name, topic.type_name, topic.qos)
+
+
+def run(
+    options: MainComputeOptions,
+    stop: StopEvent,
+    clock: Clock,
+    report: Report | None = None,
+    say: Callable[[str], None] | None = None,
+) -> int:
+    """Run until the course is driven, time is up, or ``stop`` is set; return the exit code.
+
+    Raises ConfigurationError for an unknown course and for what DDS cannot use.
+    """
+    course = load_course(options.course)
+    participant = Participant(options.domain, options.dds, NODE_NAME)
+    start = clock.monotonic_ns() * 1e-9
+    world = World(course, start, repeat=options.repeat, engage=options.engage, say=say or _print)
+    end = start + options.duration_s if options.duration_s else float("inf")
+    with MainCompute(world, participant, clock) as main_compute:
+        _loop(main_compute, stop, end, report)
+    if report is not None:
+        report("summary", {**world.summary(), "refused": main_compute.refused})
+    return 0
+
+
+def _loop(main_compute: MainCompute, stop: StopEvent, end: float, report: Report | None) -> None:
+    """Publish on a fixed grid of the monotonic clock; take commands between."""
+    clock, world = main_compute.clock, main_compute.world
+    due = clock.monotonic_ns()
+    round_number = 0
+    while not stop.is_set():
+        main_compute.take_command(max(0, due - clock.monotonic_ns()) * 1e-9)
+        now_ns = clock.monotonic_ns()
+        if now_ns < due:
+            continue
+        now = now_ns * 1e-9
+        world.advance(now)
+        if now >= end or world.has_ended(now):
+            return
+        main_compute.publish_vehicle()
+        if round_number % PLAN_EVERY == 0:
+            main_compute.publish_plan()
+            if report is not None:
+                report("status", world.status(now))
+        round_number += 1
+        due += PERIOD_NS * max(1, -(-(now_ns - due) // PERIOD_NS))
+
+
+def _print(text: str) -> None:
+    print(f"main compute: {text}", file=sys.stderr, flush=True)
