@@ -122,12 +122,18 @@ def _evaluate_positions(lat, count):
         cy = (py[j + 1] - py[j]) * inverse - sixth * (2.0 * my[j] + my[j + 1])
         cz = (pz[j + 1] - pz[j]) * inverse - sixth * (2.0 * mz[j] + mz[j + 1])
         slope = (pv[j + 1] - pv[j]) * inverse
+        # held in locals: the compiler must suppose that the stores below change the arrays
+        s0 = arc[j]
+        x0 = px[j]
+        y0 = py[j]
+        z0 = pz[j]
+        v0 = pv[j]
         while i < count and rs[i] <= end:
-            t = rs[i] - arc[j]
-            rx[i] = ((ax * t + bx) * t + cx) * t + px[j]
-            ry[i] = ((ay * t + by) * t + cy) * t + py[j]
-            rz[i] = ((az * t + bz) * t + cz) * t + pz[j]
-            rv[i] = pv[j] + slope * t
+            t = rs[i] - s0
+            rx[i] = ((ax * t + bx) * t + cx) * t + x0
+            ry[i] = ((ay * t + by) * t + cy) * t + y0
+            rz[i] = ((az * t + bz) * t + cz) * t + z0
+            rv[i] = v0 + slope * t
             i += 1
 
 

@@ -11,12 +11,19 @@ def moving_average(values, work, n, reach):
     """
     if n < reach:
         return False
+    base = values[0]  # sums of small numbers lose less
+    total = 0.0
+    low = 0
+    high = 0  # the window is [low, high)
     for i in range(n):
         span = min(reach, i, n - 1 - i)
-        total = 0.0
-        for j in range(i - span, i + span + 1):
-            total += values[j]
-        work[i] = total / (2 * span + 1)
+        while high < i + span + 1:
+            total += values[high] - base
+            high += 1
+        while low < i - span:
+            total -= values[low] - base
+            low += 1
+        work[i] = base + total / (2 * span + 1)
     for i in range(n):
         values[i] = work[i]
     return True
