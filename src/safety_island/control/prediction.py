@@ -11,6 +11,7 @@ from safety_island.control.reference_shape import curvature_at
 
 _EPSILON = 2.220446049250313e-16
 _TAIL = 100.0  # seconds that the closing duplicate stands still
+_FADED = 1e-6  # m/s
 
 
 @kernel
@@ -18,9 +19,15 @@ def _filtered_speed(current, target, ds, tau, limit):
     """Velocity filter over one step of ``ds`` [m]: first-order lag, acceleration-limited.
 
     The lag's weight dt / (tau + dt) and the limit are written with dt = ds / speed multiplied out,
-    which leaves one division in the chain from point to point.
+    which leaves one division in the chain from point to point. A speed that has faded away keeps
+    the usual form: what rounding leaves of it is a sign, from which the model makes +-1e-4 m/s.
     """
-    speed = max(abs(current), _EPSILON)
+    speed = abs(current)
+    if speed < _FADED:
+        dt = ds / max(speed, _EPSILON)
+        a = tau / (tau + dt)
+        step = a * current + (1.0 - a) * target - current
+        return current + clip(step, -limit * dt, limit * dt)
     step = (target - current) * ds / (tau * speed + ds) if ds > 0.0 else 0.0
     if abs(step) * speed > limit * ds:
         step = math.copysign(limit * ds / speed, step)
