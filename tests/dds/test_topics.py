@@ -1,0 +1,58 @@
+"""The one table of topics, as the contract (section 2) and the fault catalogue have it."""
+
+from __future__ import annotations
+
+import pytest
+
+from safety_island.dds import topics
+from safety_island.dds.qos import DEFAULT, INPUT_DEPTH, LATCHED
+from safety_island.dds.topics import BRIDGED, INPUTS, OUTPUTS, TOPICS
+from safety_island.messages import registry
+
+DEBUG = "/control/trajectory_follower/{}/debug/processing_time_ms"
+CONTRACT = {
+    "/vehicle/status/steering_status": "autoware_vehicle_msgs/msg/SteeringReport",
+    "/planning/scenario_planning/trajectory": "autoware_planning_msgs/msg/Trajectory",
+    "/localization/kinematic_state": "nav_msgs/msg/Odometry",
+    "/localization/acceleration": "geometry_msgs/msg/AccelWithCovarianceStamped",
+    "/system/operation_mode/state": "autoware_adapi_v1_msgs/msg/OperationModeState",
+    "/control/trajectory_follower/control_cmd": "autoware_control_msgs/msg/Control",
+    DEBUG.format("lateral"): "tier4_debug_msgs/msg/Float64Stamped",
+    DEBUG.format("longitudinal"): "tier4_debug_msgs/msg/Float64Stamped",
+}
+
+
+def test_names_and_types_are_those_of_the_contract() -> None:
+    assert {entry.name: entry.type_name for entry in TOPICS} == CONTRACT
+    assert all(registry.known(entry.type_name) for entry in TOPICS)
+
+
+def test_five_inputs_three_outputs_six_bridged() -> None:
+    assert (len(INPUTS), len(OUTPUTS), len(BRIDGED)) == (5, 3, 6)
+    assert [entry.bridged for entry in INPUTS] == [(1, 2)] * 5
+    assert [entry.bridged for entry in OUTPUTS] == [(2, 1), None, None]
+
+
+def test_ages() -> None:
+    limits = {entry.key: (entry.age_limit_s, entry.age_warning_s) for entry in INPUTS}
+    fast = (0.5, 0.28)
+    assert limits == {
+        "steering": fast,
+        "odometry": fast,
+        "acceleration": fast,
+        "trajectory": (0.9, None),
+        "operation_mode": (None, None),
+    }
+
+
+def test_states_that_are_sent_on_change_are_latched() -> None:
+    latched = [entry.key for entry in TOPICS if entry.qos == LATCHED]
+    assert latched == ["operation_mode", "control"]
+    assert all(entry.qos == DEFAULT for entry in TOPICS if entry.key not in latched)
+    assert all(entry.subscription_qos.depth == INPUT_DEPTH for entry in INPUTS)
+
+
+def test_an_entry_is_found_by_its_key() -> None:
+    assert topics.topic("odometry") is topics.ODOMETRY
+    with pytest.raises(KeyError):
+        topics.topic("camera")
