@@ -148,9 +148,9 @@ def test_brake_keeping_holds_the_ramps_braking(
 
 def test_a_ramp_may_reach_back_to_the_first_point() -> None:
     rig = Rig(enable_brake_keeping_before_stop=True, brake_keeping_acc=-0.9)
-    rig.road([10.0 * i for i in range(7)], RAMP, [-0.8, -0.7, -0.6, -0.5, -0.4, -0.3, 0.0])
+    rig.road([10.0 * i for i in range(7)], RAMP, [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.0])
     rig.s.state, rig.s.vel_error = DRIVE, 9.0
-    assert rig.tick(x=5.0, vx=0.5).acc_acc_limited == pytest.approx(-0.8, abs=1e-7)
+    assert rig.tick(x=5.0, vx=0.5).acc_acc_limited == pytest.approx(0.1, abs=1e-7)
 
 
 def test_brake_keeping_without_a_stop_point_or_with_enough_braking_does_nothing() -> None:

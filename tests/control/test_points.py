@@ -36,6 +36,11 @@ def test_only_the_first_run_inside_the_limits_counts() -> None:
     assert nearest_index(there_and_back, 5, 0.9, 0.0, 0.0, 0.0, 0.0) == 3
 
 
+def test_the_first_run_may_be_the_first_point_alone() -> None:
+    path = points([(0, 0.5), (9, 0), (0, 0.1)])
+    assert nearest_index(path, 3, 0.0, 0.0, 0.0, 2.0, 3.0) == 0
+
+
 def test_a_point_that_faces_elsewhere_is_skipped_while_another_fits() -> None:
     crossing = points([(1, 0), (0, 0), (0, 1)], [1.5, 1.5, 0.2])
     assert nearest_index(crossing, 3, 0.0, 0.1, 0.0, 3.0, 1.0) == 2
@@ -63,3 +68,4 @@ def test_the_offset_is_signed_and_zero_where_the_segment_has_no_length() -> None
     assert offset_along(path, 0, -3.0, -4.0) == -5.0
     assert offset_along(path, 0, -4.0, 3.0) == 0.0
     assert offset_along(path, 1, 9.0, 9.0) == 0.0
+    assert offset_along(points([(1, 2), (4, 6)]), 0, 4.0, 6.0) == 5.0
