@@ -36,7 +36,7 @@ def problem(h: Array, f: Array, lb: Array, ub: Array, lb_rate: Array, ub_rate: A
 def recorded(name: str) -> tuple[Record, int]:
     """Return a problem of the golden runs and its size."""
     with np.load(RECORDED[name]) as file:
-        return problem(file["H"], *(file[key] for key in ("f", *BOUNDS))), file["f"].size
+        return problem(file["H"], *(file[key].ravel() for key in ("f", *BOUNDS))), len(file["H"])
 
 
 def random_hessian(rng: np.random.Generator, n: int, condition: float) -> Array:

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from safety_island.control.cholesky import factorize
-from safety_island.control.daqp import _append, _remove, solve_dual
+from safety_island.control.daqp import solve_dual
 from safety_island.control.kernel import entry
 from safety_island.control.limits import MAX_HORIZON
 from safety_island.control.qp_records import QP
+from safety_island.control.qp_working_set import append, remove
 from safety_island.control.status import MpcStatus
 from tests.control.qp_problems import random_problem, recorded, smooth_hessian
 
@@ -17,13 +18,13 @@ from tests.control.qp_problems import random_problem, recorded, smooth_hessian
 @entry(QP, int, int, int)
 def append_constraint(qp: Any, n: int, k: int, constraint: int) -> Any:
     """Append a constraint at its upper bound; 1 when it is independent of the k others."""
-    return 1 if _append(qp[0], n, k, constraint, 1) else 0
+    return 1 if append(qp[0], n, k, constraint, 1) else 0
 
 
 @entry(QP, int, int)
 def remove_position(qp: Any, k: int, j: int) -> Any:
     """Remove a position of the working set."""
-    return _remove(qp[0], k, j)
+    return remove(qp[0], k, j)
 
 
 @entry(QP, int, int)
@@ -102,15 +103,3 @@ def test_contradiction_that_was_not_seen_before_ends_in_infeasible() -> None:
     q[0].ubA[0] = 0.9
     assert solve_directly.call(q, n, 500) == MpcStatus.INFEASIBLE
     assert q[0].qp_active_count == 0
-
-
-def test_repeated_guess_is_taken_once() -> None:
-    q, n = recorded("u_turn")
-    q[0].lb[:n] = 0.1  # the minimiser 0 is outside
-    assert solve_directly.call(q, n, 500) == MpcStatus.SOLVED
-    expected = q[0].u.copy()
-    q[0].qp_active[:4] = q[0].qp_active[0]
-    q[0].qp_multiplier[:4] = 1.0
-    q[0].qp_active_count = 4
-    assert solve_directly.call(q, n, 500) == MpcStatus.SOLVED
-    np.testing.assert_allclose(q[0].u, expected, rtol=0, atol=1e-12)

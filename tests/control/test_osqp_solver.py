@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from safety_island.bench import yardstick
 from safety_island.control.osqp_solver import OsqpSolver
 from safety_island.control.status import MpcStatus
 from safety_island.errors import ConfigurationError
@@ -27,6 +26,7 @@ def test_recorded_problem_gives_the_recorded_solution(name: str, solver: OsqpSol
     with np.load(RECORDED[name]) as file:
         np.testing.assert_allclose(q[0].u[:n], file["Uex"], rtol=0, atol=1e-9)
     assert q[0].qp_iterations > 0
+    assert q[0].qp_active_count == (44 if name == "u_turn" else 0)
     assert q[0].qp_residual < 1e-8
 
 
@@ -88,12 +88,3 @@ def test_missing_package_is_one_clear_line(monkeypatch: pytest.MonkeyPatch) -> N
 def test_horizon_out_of_range_is_refused(horizon: int) -> None:
     with pytest.raises(ValueError, match="expected 1 to 64"):
         OsqpSolver(horizon)
-
-
-def test_yardstick_is_a_cold_solve_of_the_recorded_problem() -> None:
-    pytest.importorskip("osqp")
-    problem = yardstick.problem()
-    q, n = recorded("s_curve")
-    np.testing.assert_array_equal(problem.hessian.toarray(), np.triu(q[0].H[:n, :n]))
-    assert problem.rows.nnz == 3 * n - 1
-    assert yardstick.measure_us(problem) > 0.0

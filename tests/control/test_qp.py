@@ -4,14 +4,16 @@ import math
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from safety_island.control.qp import MAX_ITERATIONS
+from safety_island.control.qp import MAX_ITERATIONS, QP
 from safety_island.control.qp_alone import solve_problem
 from safety_island.control.status import MpcStatus
 from tests.control.qp_problems import (
+    BOUNDS,
     RECORDED,
     cost,
     problem,
@@ -126,41 +128,29 @@ def test_contradicting_bounds_are_infeasible(kind: str) -> None:
     assert q[0].qp_active_count == 0
 
 
-def test_iteration_limit_is_told_and_leaves_no_guess() -> None:
+def test_iteration_limit_is_told() -> None:
     q, n = recorded("u_turn")
-    assert solve(q, n, 10) == MpcStatus.ITERATION_LIMIT
+    assert solve(q, n, 3) == MpcStatus.ITERATION_LIMIT
     assert q[0].qp_active_count == 0
     assert solve(q, n) == MpcStatus.SOLVED
+    assert q[0].qp_iterations < 15
 
 
-def test_guess_of_the_last_solve_saves_work_and_keeps_the_solution() -> None:
-    q, n = recorded("u_turn")
-    solve(q, n)
-    cold, steps = q[0].u[:n].copy(), int(q[0].qp_iterations)
-    assert solve(q, n) == MpcStatus.SOLVED
-    assert (int(q[0].qp_iterations), steps) == (1, 45)
-    np.testing.assert_allclose(q[0].u[:n], cold, rtol=0, atol=1e-13)
-
-
-def test_guess_of_another_problem_does_no_harm() -> None:
+def test_nothing_is_kept_from_one_solve_to_the_next() -> None:
     rng = np.random.default_rng(8)
-    warm = None
+    used = np.zeros(1, QP)
     for trial in range(60):
-        family = FAMILIES[trial % len(FAMILIES)]
         n = 50 if trial % 4 else int(rng.integers(1, 65))
-        q = random_problem(rng, n, smooth_hessian(n, 1e3), family)
-        if warm is not None:
-            for key in ("qp_active", "qp_active_count", "qp_multiplier", "qp_side"):
-                q[0][key] = warm[0][key]
-        start = q.copy()
-        assert solve(q, n) == MpcStatus.SOLVED
-        cold = q.copy()
-        cold[0].qp_active_count = 0
-        assert solve(cold, n) == MpcStatus.SOLVED
-        np.testing.assert_allclose(q[0].u[:n], cold[0].u[:n], rtol=0, atol=1e-9)
-        assert solve(start, n) == MpcStatus.SOLVED
-        assert start.tobytes() == q.tobytes()  # the same memory gives the same bytes
-        warm = q
+        condition = 10.0 ** rng.integers(1, 8)
+        fresh = random_problem(
+            rng, n, smooth_hessian(n, condition), FAMILIES[trial % len(FAMILIES)]
+        )
+        for key in ("H", "f", *BOUNDS):
+            used[0][key] = fresh[0][key]
+        assert solve(used, n) == solve(fresh, n) == MpcStatus.SOLVED
+        assert used[0].u[:n].tobytes() == fresh[0].u[:n].tobytes()
+        assert used[0].qp_iterations == fresh[0].qp_iterations
+        used[0].u[:] = np.nan  # as after a failure
 
 
 def test_not_positive_definite_is_told_before_the_bounds() -> None:
@@ -176,24 +166,31 @@ def test_not_finite_gradient_never_gives_a_solution() -> None:
         assert solve(q, n) not in (MpcStatus.SOLVED, MpcStatus.SOLUTION_VIOLATES)
 
 
-SMALL_PROBLEMS = """
+SOLVE_FILE = """
+import sys
 import numpy as np
+from safety_island.control.qp import QP
 from safety_island.control.qp_alone import solve_problem
-from tests.control.qp_problems import random_problem, smooth_hessian
 solve_problem.prepare()
-rng = np.random.default_rng(2)
-for family in ("plain", "rows", "equal", "frozen", "double", "narrow"):
-    for n in (5, 8):
-        q = random_problem(rng, n, smooth_hessian(n, 1e3), family)
+q = np.zeros(1, QP)
+with open(sys.argv[1], "rb") as file:
+    for n in (5, 8) * 6:
+        q[0] = np.frombuffer(file.read(QP.itemsize), QP)[0]
         status = solve_problem.call(q, n, 200)
-        print(family, n, status, q[0].qp_iterations, q[0].u[:n].tobytes().hex())
+        print(n, status, q[0].qp_iterations, q[0].u[:n].tobytes().hex())
 """
 
 
-def test_plain_python_gives_the_same_bytes() -> None:
+def test_plain_python_gives_the_same_bytes(tmp_path: Path) -> None:
+    rng = np.random.default_rng(2)
+    problems = tmp_path / "problems"
+    with problems.open("wb") as file:  # from a file, as BLAS need not repeat its last bits
+        for family in FAMILIES:
+            for n in (5, 8):
+                file.write(random_problem(rng, n, smooth_hessian(n, 1e3), family).tobytes())
     outputs = [
         subprocess.run(
-            [sys.executable, "-W", "error", "-c", SMALL_PROBLEMS],
+            [sys.executable, "-W", "error", "-c", SOLVE_FILE, str(problems)],
             env={**os.environ, "SAFETY_ISLAND_JIT": jit, "PYTHONPATH": os.pathsep.join(sys.path)},
             capture_output=True,
             text=True,
@@ -202,4 +199,6 @@ def test_plain_python_gives_the_same_bytes() -> None:
         for jit in ("0", "1")
     ]
     assert outputs[0] == outputs[1]
-    assert all(line.split()[2] == "0" for line in outputs[0].splitlines())
+    lines = [line.split() for line in outputs[0].splitlines()]
+    assert all(line[1] == "0" for line in lines)
+    assert sum(int(line[2]) for line in lines) > 20

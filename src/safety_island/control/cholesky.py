@@ -108,12 +108,35 @@ def solve_transposed(q, x, start, n):
 
 @kernel
 def solve_upper(q, x, n):
-    """Solve R y = x in place."""
-    for back in range(n):
-        k = n - 1 - back
-        row = q.qp_R[k][k + 1 : n]
-        known = x[k + 1 : n]
-        x[k] = (x[k] - dot(row, known, back)) * q.qp_inverse[k]
+    """Solve R y = x in place, two rows at a time."""
+    even = n - n % 2
+    if even < n:
+        x[even] *= q.qp_inverse[even]
+    for back in range(even // 2):
+        k = even - 2 - 2 * back
+        above, below = _dot_pair(q.qp_R[k][k + 2 : n], q.qp_R[k + 1][k + 2 : n], x[k + 2 : n])
+        x[k + 1] = (x[k + 1] - below) * q.qp_inverse[k + 1]
+        x[k] = (x[k] - above - q.qp_R[k, k + 1] * x[k + 1]) * q.qp_inverse[k]
+
+
+@kernel
+def _dot_pair(a, b, x):
+    """Scalar products a'x and b'x, each in two interleaved sums."""
+    a0 = 0.0
+    a1 = 0.0
+    b0 = 0.0
+    b1 = 0.0
+    for half in range(x.size // 2):
+        i = 2 * half
+        a0 += a[i] * x[i]
+        a1 += a[i + 1] * x[i + 1]
+        b0 += b[i] * x[i]
+        b1 += b[i + 1] * x[i + 1]
+    if x.size % 2 == 1:
+        i = x.size - 1
+        a0 += a[i] * x[i]
+        b0 += b[i] * x[i]
+    return a0 + a1, b0 + b1
 
 
 @kernel

@@ -10,17 +10,11 @@ lower one, free where both bounds are equal.
 
 import math
 
-from safety_island.control.cholesky import solve_transposed, solve_upper
 from safety_island.control.kernel import kernel
 from safety_island.control.limits import MAX_HORIZON
-from safety_island.control.qp_ldl import (
-    append_row,
-    back_substitute,
-    forward,
-    remove_row,
-    solve_gram,
-    solve_targets,
-)
+from safety_island.control.qp_ldl import back_substitute, solve_targets
+from safety_island.control.qp_primal import primal
+from safety_island.control.qp_working_set import append, guess, remove
 from safety_island.control.status import MpcStatus
 
 SOLVED = int(MpcStatus.SOLVED)
@@ -30,14 +24,6 @@ ITERATION_LIMIT = int(MpcStatus.ITERATION_LIMIT)
 VIOLATION = 1e-11
 """A bound counts as kept when it is exceeded by no more than this [rad]."""
 
-DEPENDENT = 1e-11
-"""A row is a combination of the working set when this part of its squared length is left."""
-
-ACTIVE_ERROR = 1e-13
-"""Distance of u from an active bound that is not worth a correction [rad]."""
-
-MAX_CORRECTIONS = 2
-
 ROUNDING = 1e-13
 """A multiplier of the wrong sign counts as zero below this part of the greatest one."""
 
@@ -46,10 +32,10 @@ ROUNDING = 1e-13
 def solve_dual(q, n, max_iterations):
     """Find the constrained minimiser from ``qp_free`` and the factor of H.
 
-    Starts from the working set and multipliers that the last call left. Sets ``u`` and returns
-    SOLVED, INFEASIBLE or ITERATION_LIMIT.
+    Keeps nothing from one call to the next: the same problem gives the same bytes. Sets ``u`` and
+    returns SOLVED, INFEASIBLE or ITERATION_LIMIT.
     """
-    k = _restore(q, n)
+    k = guess(q, n)
     best = -1.0
     stalled = False
     status = ITERATION_LIMIT
@@ -58,9 +44,9 @@ def solve_dual(q, n, max_iterations):
         solve_targets(q, k)
         blocking = _step_to_targets(q, k, stalled)
         if blocking >= 0:
-            k = _remove(q, k, blocking)
+            k = remove(q, k, blocking)
             continue
-        _primal(q, n, k)
+        primal(q, n, k)
         value = _dual_value(q, k)
         stalled = stalled or value <= best
         best = max(best, value)
@@ -75,58 +61,6 @@ def solve_dual(q, n, max_iterations):
             break
     q.qp_active_count = k if status == SOLVED else 0
     return status
-
-
-@kernel
-def _restore(q, n):
-    """Rebuild the factor for the constraints of the last call; return how many there are."""
-    count = q.qp_active_count
-    for i in range(n):
-        q.qp_in_set[i] = 0
-        q.qp_in_set[MAX_HORIZON + i] = 0
-    for j in range(MAX_HORIZON + 1):
-        q.qp_slot[j] = j
-    k = 0
-    for j in range(count):
-        constraint = q.qp_active[j]
-        if constraint % MAX_HORIZON < n:
-            multiplier = q.qp_multiplier[j]
-            side = -1 if multiplier < 0.0 else 1
-            independent = _append(q, n, k, constraint, side)
-            if independent:
-                if q.qp_side[k] == 0 or side == q.qp_side[k]:
-                    q.qp_multiplier[k] = multiplier
-                q.qp_in_set[constraint] = 1
-                k += 1
-    return k
-
-
-@kernel
-def _append(q, n, k, constraint, side):
-    """Put a constraint behind the k of the working set; return whether it is independent."""
-    i = constraint % MAX_HORIZON
-    is_rate = constraint >= MAX_HORIZON
-    low = q.lbA[i] if is_rate else q.lb[i]
-    high = q.ubA[i] if is_rate else q.ub[i]
-    start = i - 1 if is_rate and i > 0 else i
-    row = q.qp_M[q.qp_slot[k]]
-    for c in range(n):
-        row[c] = 0.0
-    row[i] = 1.0
-    value = q.qp_free[i]
-    if start < i:
-        row[start] = -1.0
-        value -= q.qp_free[start]
-    solve_transposed(q, row, start, n)
-    length = append_row(q, n, k, start)
-    q.qp_active[k] = constraint
-    q.qp_side[k] = side if low < high else 0
-    q.qp_bound[k] = high if side > 0 else low
-    q.qp_excess[k] = value - q.qp_bound[k]
-    q.qp_start[k] = start
-    q.qp_multiplier[k] = 0.0
-    forward(q, k, k + 1)
-    return q.qp_D[k] > DEPENDENT * length
 
 
 @kernel
@@ -153,73 +87,6 @@ def _step_to_targets(q, k, stalled):
     for j in range(k):
         q.qp_multiplier[j] += fraction * (q.qp_target[j] - q.qp_multiplier[j])
     return blocking
-
-
-@kernel
-def _remove(q, k, j):
-    """Take position j out of the working set of k; return k - 1."""
-    slot = q.qp_slot[j]
-    q.qp_in_set[q.qp_active[j]] = 0
-    remove_row(q, k, j)
-    for t in range(j, k - 1):
-        q.qp_slot[t] = q.qp_slot[t + 1]
-        q.qp_start[t] = q.qp_start[t + 1]
-        q.qp_active[t] = q.qp_active[t + 1]
-        q.qp_side[t] = q.qp_side[t + 1]
-        q.qp_bound[t] = q.qp_bound[t + 1]
-        q.qp_excess[t] = q.qp_excess[t + 1]
-        q.qp_multiplier[t] = q.qp_multiplier[t + 1]
-    q.qp_slot[k - 1] = slot
-    forward(q, j, k - 1)
-    return k - 1
-
-
-@kernel
-def _primal(q, n, k):
-    """Set u = free - H^-1 A' multipliers, and correct what rounding leaves at the active bounds."""
-    for i in range(n):
-        q.u[i] = q.qp_free[i]
-    _shift(q, n, k, q.qp_multiplier)
-    for _ in range(MAX_CORRECTIONS):
-        if _active_error(q, k) <= ACTIVE_ERROR:
-            break
-        solve_gram(q, q.qp_target, k)
-        _shift(q, n, k, q.qp_target)
-        for j in range(k):
-            q.qp_multiplier[j] += q.qp_target[j]
-
-
-@kernel
-def _shift(q, n, k, multipliers):
-    """Take R^-1 M' multipliers off u."""
-    w = q.qp_w
-    for i in range(n):
-        w[i] = 0.0
-    for j in range(k):
-        start = q.qp_start[j]
-        row = q.qp_M[q.qp_slot[j]][start:n]
-        part = w[start:n]
-        multiplier = multipliers[j]
-        for i in range(n - start):
-            part[i] += multiplier * row[i]
-    solve_upper(q, w, n)
-    for i in range(n):
-        q.u[i] -= w[i]
-
-
-@kernel
-def _active_error(q, k):
-    """Set ``qp_target`` to how far u is above each active bound; return the greatest magnitude."""
-    worst = 0.0
-    for j in range(k):
-        constraint = q.qp_active[j]
-        i = constraint % MAX_HORIZON
-        error = q.u[i] - q.qp_bound[j]
-        if constraint > MAX_HORIZON:
-            error -= q.u[i - 1]
-        q.qp_target[j] = error
-        worst = max(worst, abs(error))
-    return worst
 
 
 @kernel
@@ -271,14 +138,14 @@ def _enter(q, n, k, entering):
     """
     side = 1 if entering > 0 else -1
     constraint = abs(entering) - 1
-    independent = _append(q, n, k, constraint, side)
+    independent = append(q, n, k, constraint, side)
     q.qp_in_set[constraint] = 1
     if independent:
         return k + 1
     leaving = _step_along_null(q, k, side)
     if leaving < 0:
         return -1
-    return _remove(q, k + 1, leaving)
+    return remove(q, k + 1, leaving)
 
 
 @kernel

@@ -16,6 +16,7 @@ import numpy.typing as npt
 from safety_island.control.limits import MAX_HORIZON
 from safety_island.control.qp import MAX_ITERATIONS
 from safety_island.control.qp_alone import check_problem, solve_problem
+from safety_island.control.qp_check import MAX_VIOLATION
 from safety_island.control.qp_records import QP
 from safety_island.control.status import MpcStatus
 from safety_island.errors import ConfigurationError
@@ -87,6 +88,12 @@ class SparseProblem:
             solver.setup(self.hessian, self.gradient, self.rows, self.lower, self.upper, **SETTINGS)
             return solver.solve(raise_error=False)
 
+    def touched(self, u: Array) -> int:
+        """Return how many constraints stand at a bound at ``u`` (n,)."""
+        values = self.rows @ u
+        near = (values >= self.upper - MAX_VIOLATION) | (values <= self.lower + MAX_VIOLATION)
+        return int(np.count_nonzero(near))
+
 
 def sparse_problem(q: Any, n: int) -> SparseProblem:
     """Return the problem that a record (or a mapping of arrays) with ``QP_COLUMNS`` describes."""
@@ -131,18 +138,18 @@ class OsqpSolver:
         status = int(result.info.status_val)
         if status != OSQP_SOLVED:
             return _FAILURES.get(status, MpcStatus.SOLVER_ERROR)
-        return self._take(q, result)
+        q["qp_iterations"] = int(result.info.iter)
+        return self._take(q, problem, result.x)
 
-    def _take(self, q: Any, result: Any) -> MpcStatus:
+    def _take(self, q: Any, problem: SparseProblem, vector: Array) -> MpcStatus:
         own = self._own[0]
         for key in ("H", "f", "lb", "ub", "lbA", "ubA"):
             own[key] = q[key]
-        own["u"][: self.horizon] = result.x
-        own["qp_active_count"] = 0
+        own["u"][: self.horizon] = vector
         status = check_problem.call(self._own, self.horizon)
         if status != MpcStatus.SOLVED:
             status = solve_problem.call(self._own, self.horizon, MAX_ITERATIONS)
         for key in ("u", "qp_violation", "qp_residual"):
             q[key] = own[key]
-        q["qp_iterations"] = int(result.info.iter)
+        q["qp_active_count"] = problem.touched(own["u"][: self.horizon])
         return MpcStatus(status)

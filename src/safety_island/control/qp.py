@@ -17,7 +17,6 @@ __all__ = [
     "check_solution",
     "check_unconstrained",
     "factorize",
-    "forget_active_set",
     "solve_constrained",
     "solve_unconstrained",
 ]
@@ -30,26 +29,18 @@ MAX_ITERATIONS = 600
 def solve_constrained(q, n, max_iterations):
     """Set ``u`` to the minimiser inside all bounds; ``factorize`` must have been called.
 
-    Returns SOLVED, INFEASIBLE or ITERATION_LIMIT. The active constraints of the last call are the
-    first guess of the next; they change the way to the solution, not the solution.
+    Returns SOLVED, INFEASIBLE or ITERATION_LIMIT.
     """
     q.qp_iterations = 0
+    q.qp_active_count = 0
     if not _feasible(q, n):
-        forget_active_set(q)
         return INFEASIBLE
     solve_unconstrained(q, n)
     if _inside(q, n):
-        forget_active_set(q)
         return SOLVED
     for i in range(n):
         q.qp_free[i] = q.u[i]
     return solve_dual(q, n, max_iterations)
-
-
-@kernel
-def forget_active_set(q):
-    """Let the next ``solve_constrained`` start without a guess."""
-    q.qp_active_count = 0
 
 
 @kernel

@@ -24,7 +24,7 @@ QP_COLUMNS: list[Any] = [
     ("ubA", "f8", (_N,)),
     ("u", "f8", (_N,)),  # the solution [rad]
     ("qp_iterations", "i8"),  # of the last solve_constrained; 0: the unconstrained one was taken
-    ("qp_active_count", "i8"),  # constraints in the working set; the next solve starts from it
+    ("qp_active_count", "i8"),  # constraints that the solution is held at
     ("qp_violation", "f8"),  # check_solution: greatest violation of a bound [rad]
     ("qp_residual", "f8"),  # check_solution: of the optimality conditions, relative
     # work memory
