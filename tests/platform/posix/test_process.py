@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import signal
+import subprocess
+import sys
 import threading
 
 import pytest
@@ -35,3 +37,20 @@ def test_outside_the_main_thread_nothing_is_installed() -> None:
     thread.start()
     thread.join()
     assert inside == [before]
+
+
+def test_leaving_flushes_what_was_printed_and_takes_nothing_apart() -> None:
+    program = """
+import atexit
+from safety_island.platform.posix.process import leave
+atexit.register(print, "taken apart")
+print("said", end="")
+leave(7)
+"""
+    run = subprocess.run(
+        [sys.executable, "-c", program],
+        capture_output=True,
+        text=True,
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
+    )
+    assert (run.returncode, run.stdout, run.stderr) == (7, "said", "")
