@@ -57,3 +57,18 @@ class StopAtOnce:
 
 def _do_nothing(*_: object) -> None:
     """Let the signal reach the pipe and nothing else."""
+
+
+class StopFlag:
+    """Tells a loop to end; ``set`` may be called by a signal handler."""
+
+    def __init__(self) -> None:
+        self._is_set = False
+
+    def set(self) -> None:
+        """End the loop."""
+        self._is_set = True
+
+    def is_set(self) -> bool:
+        """Whether to end."""
+        return self._is_set

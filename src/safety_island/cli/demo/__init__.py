@@ -7,6 +7,8 @@ import json
 import signal
 import sys
 from contextlib import suppress
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from safety_island.cli import options
 from safety_island.cli.demo.children import make_children
@@ -75,10 +77,9 @@ def execute(arguments: argparse.Namespace) -> int:
 
 
 def _run(arguments: argparse.Namespace, domains: tuple[int, int]) -> int:
-    children = make_children(arguments, domains)
     interrupted = False
-    with _display(arguments, domains) as show:
-        session = Session(children, show)
+    with TemporaryDirectory() as folder, _display(arguments, domains) as show:
+        session = Session(make_children(arguments, domains, Path(folder)), show)
         try:
             session.run()
         except KeyboardInterrupt:

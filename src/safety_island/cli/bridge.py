@@ -1,0 +1,101 @@
+"""``island bridge``: forwards topics between DDS domains, as ROS 2's ``domain_bridge`` does."""
+
+from __future__ import annotations
+
+import argparse
+
+from safety_island.cli import options
+from safety_island.cli.jsonlines import JsonLines
+from safety_island.cli.parser import teach
+from safety_island.cli.stopping import StopAtOnce, StopFlag
+
+SWITCH = {"true": True, "false": False}
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    teach(
+        parser,
+        """
+Forward topics from one DDS domain to another, as the file says (the schema of ROS 2's
+domain_bridge). Messages pass as bytes: no type needs to be known. A route opens when its publisher
+is there, takes over its reliability and durability, and never feeds its own output back.
+""",
+        (
+            "island bridge demo/bridge/bridge-config.yaml",
+            "the island's six topics, domains 1 and 2",
+        ),
+        ("island bridge --from 7 --to 8 my.yaml", "other domains than in the file"),
+        ("island bridge --interface tap0 a.yaml b.yaml", "two files, on a network"),
+    )
+    parser.add_argument("config", nargs="+", metavar="CONFIG", help="bridge file (YAML)")
+    parser.add_argument(
+        "--from",
+        dest="from_domain",
+        type=options.domain_id,
+        metavar="ID",
+        help="domain to read from, in place of every from_domain of the files",
+    )
+    parser.add_argument(
+        "--to",
+        dest="to_domain",
+        type=options.domain_id,
+        metavar="ID",
+        help="domain to write to, in place of every to_domain of the files",
+    )
+    parser.add_argument(
+        "--mode",
+        choices=("normal", "compress", "decompress"),
+        help="in place of the mode of the files",
+    )
+    _add_switch(parser, "--wait-for-subscription", "false", "open a route only when it is read")
+    _add_switch(parser, "--wait-for-publisher", "true", "open a route only when it is written")
+    parser.add_argument(
+        "--auto-remove",
+        nargs="?",
+        const="true",
+        default="false",
+        choices=tuple(SWITCH),
+        help="close a route again when what it waited for is gone (default: false)",
+    )
+    options.add_interface(parser)
+    options.add_duration(parser, 0.0)
+    options.add_json(parser, "counts, once a second,")
+
+
+def _add_switch(parser: argparse.ArgumentParser, name: str, default: str, what: str) -> None:
+    parser.add_argument(
+        name,
+        nargs="?",
+        const="true",
+        default=default,
+        choices=tuple(SWITCH),
+        help=f"{what} (default: {default})",
+    )
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Forward until told to stop."""
+    with StopAtOnce() as start:
+        from safety_island.bridge import BridgeOptions, run
+        from safety_island.bridge.link import WaitFor
+        from safety_island.dds.config import DdsConfig
+        from safety_island.platform import load
+
+        chosen = BridgeOptions(
+            from_domain=arguments.from_domain,
+            to_domain=arguments.to_domain,
+            mode=arguments.mode,
+            wait_for=WaitFor(
+                publisher=SWITCH[arguments.wait_for_publisher],
+                subscription=SWITCH[arguments.wait_for_subscription],
+                auto_remove=SWITCH[arguments.auto_remove],
+            ),
+            dds=DdsConfig(interface=arguments.interface),
+            duration_s=arguments.duration,
+        )
+        stop = StopFlag()
+        report = JsonLines().write if arguments.json else None
+        with load("posix").on_stop(stop.set):
+            start.disarm()
+            return run(arguments.config, chosen, stop, report)
