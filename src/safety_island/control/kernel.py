@@ -11,6 +11,7 @@ from __future__ import annotations
 import hashlib
 import os
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -25,26 +26,33 @@ ENTRIES: list[Entry] = []
 """Every kernel that the island calls, in the order of definition."""
 
 
-def cache_folder() -> Path:
-    """Where compiled kernels are kept, keyed by a hash of every kernel source and of Numba.
-
-    Numba itself would not notice an edit in a function that was imported from another file.
-    """
+@cache
+def source_hash() -> str:
+    """Hash of every kernel source and of the versions of Numba and NumPy; read once."""
     import numba
 
     digest = hashlib.sha256(f"{numba.__version__} {np.__version__}".encode())
     for source in sorted(Path(__file__).parent.glob("*.py")):
         digest.update(source.read_bytes())
-    cache = os.environ.get("XDG_CACHE_HOME")
-    default = (Path(cache) if cache else Path("~/.cache").expanduser()) / "safety-island"
+    return digest.hexdigest()[:16]
+
+
+def cache_folder() -> Path:
+    """Where compiled kernels are kept, keyed by the hash of what they come from.
+
+    Numba itself would not notice an edit in a function that was imported from another file.
+    """
+    home = os.environ.get("XDG_CACHE_HOME")
+    default = (Path(home) if home else Path("~/.cache").expanduser()) / "safety-island"
     root = Path(os.environ.get("SAFETY_ISLAND_CACHE") or default)
-    return root / f"kernels-{digest.hexdigest()[:16]}"
+    return root / f"kernels-{source_hash()}"
 
 
 def _njit(**options: Any) -> Callable[[Any], Any]:
     import numba
 
-    numba.config.CACHE_DIR = str(cache_folder())
+    settings: Any = numba.config
+    settings.CACHE_DIR = str(cache_folder())
     decorator: Callable[[Any], Any] = numba.njit(**FLAGS, **options)
     return decorator
 
