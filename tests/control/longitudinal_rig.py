@@ -6,7 +6,6 @@ import math
 from typing import Any
 
 import numpy as np
-import yaml
 
 from safety_island.control.longitudinal import longitudinal_step
 from safety_island.control.longitudinal_state import (
@@ -23,7 +22,7 @@ from safety_island.control.records import (
     pack_parameters,
 )
 from safety_island.control.status import LongitudinalState
-from tests.golden.harness import BASE_YAML, parameters_from
+from tests.golden.harness import firmware
 
 PERIOD = 0.15
 START = 1000.0
@@ -31,11 +30,7 @@ START = 1000.0
 
 def packed(**overrides: Any) -> Records:
     """The firmware's parameters with some of them changed, as a PARAMS record."""
-    values = yaml.safe_load(BASE_YAML.read_text()) | {"ctrl_period": PERIOD}
-    values = {key.replace(".", "_"): value for key, value in values.items()}
-    unknown = set(overrides) - set(values) - {"correct_reverse_signs"}
-    assert not unknown, unknown
-    return pack_parameters(parameters_from(values | overrides))
+    return pack_parameters(firmware(**({"ctrl_period": PERIOD} | overrides)))
 
 
 class Rig:

@@ -1,171 +1,88 @@
-"""Recorded runs of the C++ firmware's controllers: how they are read and replayed.
-
-A run holds inputs and outputs tick by tick; ``/work/shared`` is not needed, copies stand in
-``data/``. Column names are those of the recordings.
-"""
+"""Recorded runs of the C++ firmware's controllers, and how a test feeds one to the controllers."""
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator
-from dataclasses import dataclass, fields
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-import numpy.typing as npt
-import yaml
-
-from safety_island.control.params import (
-    LateralParams,
-    LongitudinalParams,
-    NodeParams,
-    Parameters,
-    VehicleParams,
+from safety_island import params
+from safety_island.control.follower import TrajectoryFollower
+from safety_island.control.params import Parameters
+from safety_island.control.status import Mode
+from safety_island.replay.recording import (
+    ACCELERATION,
+    ODOMETRY,
+    OPERATION_MODE,
+    STEERING,
+    Recording,
+    find,
+    load,
 )
-from safety_island.control.records import INPUTS, POINT, Records
 
 DATA = Path(__file__).parent / "data"
-BASE_YAML = DATA / "params.yaml"
-
-ODOMETRY, STEERING, ACCELERATION, OPERATION_MODE = 1, 2, 4, 8
-"""Bits of ``deliver_mask``."""
-
-NOT_RECORDED = {"correct_reverse_signs": False}
-"""Parameters of ours that the firmware does not have, with the value that is its behaviour."""
+_ODOMETRY_COLUMNS = ("x", "y", "z", "qx", "qy", "qz", "qw", "vx", "vy", "wz")
 
 
-@dataclass(frozen=True)
-class Run:
-    """One recording; ``state`` and ``output`` are columns by name, each of shape (ticks,)."""
-
-    name: str
-    ticks: int
-    state: dict[str, npt.NDArray[np.float64]]
-    output: dict[str, npt.NDArray[np.float64]]
-    deliver_mask: npt.NDArray[np.int64]
-    traj_select: npt.NDArray[np.float64]
-    path_points: npt.NDArray[np.float64]
-    path_offsets: npt.NDArray[np.int64]
-    overrides: dict[str, Any]
+def run_paths() -> list[Path]:
+    """Every recorded run; those of ``bench`` hold the contract's columns only."""
+    return find([DATA])
 
 
-def columns(table: npt.NDArray[np.float64], names: Any) -> dict[str, npt.NDArray[np.float64]]:
-    """Return the columns of a (ticks, n) table by name."""
-    return {str(name): table[:, i] for i, name in enumerate(names)}
+def name_of(path: Path) -> str:
+    """``scenario/run``, to name a test."""
+    return f"{path.parent.name}/{path.stem}"
 
 
-def load_run(path: Path) -> Run:
-    """Read one ``.npz``; override values that are text are read as YAML scalars."""
-    with np.load(path) as data:
-        texts = json.loads(str(data["params_json"]))
-        return Run(
-            name=f"{path.parent.name}/{path.stem}",
-            ticks=len(data["state"]),
-            state=columns(data["state"], data["state_cols"]),
-            output=columns(data["output"], data["output_cols"]),
-            deliver_mask=data["deliver_mask"].astype(np.int64),
-            traj_select=data["traj_select"],
-            path_points=data["path_points"],
-            path_offsets=data["path_offsets"].astype(np.int64),
-            overrides={k: yaml.safe_load(v) if isinstance(v, str) else v for k, v in texts.items()},
-        )
+def recorded(name: str) -> Recording:
+    """Return the run ``scenario/run``."""
+    return load(DATA / f"{name}.npz")
 
 
-def run_paths(pattern: str = "*/*.npz") -> list[Path]:
-    """Every recorded run, without the benchmark runs."""
-    return sorted(path for path in DATA.glob(pattern) if path.parent.name != "bench")
+def parameters_of(run: Recording) -> Parameters:
+    """Return the parameters that a run was recorded with."""
+    return params.from_mapping(run.overrides, "firmware")
 
 
-def bench_paths() -> list[Path]:
-    """The benchmark runs; they hold the first six output columns only."""
-    return sorted(DATA.glob("bench/*.npz"))
+def firmware(**values: Any) -> Parameters:
+    """Return the firmware's parameters with some fields set by name, whatever their value.
 
-
-def parameters_of(run: Run, base_yaml: Path = BASE_YAML) -> Parameters:
-    """Return the parameters that a run was recorded with; what it does not declare is 0."""
-    values = yaml.safe_load(base_yaml.read_text()) | run.overrides
-    return parameters_from({key.replace(".", "_"): value for key, value in values.items()})
-
-
-def parameters_from(values: dict[str, Any]) -> Parameters:
-    """Fill the parameter dataclasses by field name."""
-    groups: list[Any] = [
-        group(**{item.name: _value(item.name, str(item.type), values) for item in fields(group)})
-        for group in (VehicleParams, NodeParams, LateralParams, LongitudinalParams)
-    ]
+    Raises KeyError for a name that no field has.
+    """
+    base = params.load_set("firmware")
+    groups: list[Any] = []
+    for group in (base.vehicle, base.node, base.lateral, base.longitudinal):
+        names = {item.name for item in fields(group)}
+        chosen = {name: values.pop(name) for name in names & set(values)}
+        groups.append(replace(group, **chosen))
+    if values:
+        raise KeyError(f"no parameter has the name {sorted(values)}")
     return Parameters(*groups)
 
 
-def _value(name: str, kind: str, values: dict[str, Any]) -> Any:
-    value = values.get(name, NOT_RECORDED.get(name, 0))
-    if kind.startswith("tuple"):
-        return tuple(float(item) for item in value)
-    return {"float": float, "int": int, "bool": bool, "str": str}[kind](value)
+def played(run: Recording, follower: TrajectoryFollower) -> Iterator[tuple[int, float]]:
+    """Offer each tick's messages; yield (tick, now) for the ticks in which a command came out.
 
-
-def trajectory(run: Run, tick: int) -> Records:
-    """Points of the trajectory message in force at a tick, shape (points,), POINT."""
-    path, first, end, _ = run.traj_select[tick]
-    begin = run.path_offsets[int(path)]
-    rows = run.path_points[begin + int(first) : begin + int(end)]
-    points: Records = np.zeros(len(rows), POINT)
-    for i, name in enumerate(POINT.names[:13]):
-        points[name] = rows[:, i]
-    return points
-
-
-def new_trajectory(run: Run, tick: int) -> bool:
-    """Whether a trajectory message was delivered before this tick."""
-    if run.traj_select[tick, 0] < 0:
-        return False
-    return tick == 0 or bool((run.traj_select[tick] != run.traj_select[tick - 1]).any())
-
-
-def deliver(run: Run, tick: int, inputs: Records) -> None:
-    """Write the messages of a tick into the inputs; what was not delivered stays as it was."""
-    mask = run.deliver_mask[tick]
-    delivered = {
-        ODOMETRY: "x y z qx qy qz qw vx vy wz",
-        STEERING: "steer",
-        ACCELERATION: "ax",
-        OPERATION_MODE: "mode enabled",
-    }
-    for bit, names in delivered.items():
-        if mask & bit:
-            for name in names.split():
-                inputs[0][name] = run.state[name][tick]
-
-
-def first_inputs() -> Records:
-    """Inputs before the first tick: the firmware takes the mode as received, STOP and enabled."""
-    inputs: Records = np.zeros(1, INPUTS)
-    inputs[0].qw = 1.0
-    inputs[0].mode = 1
-    inputs[0].enabled = True
-    return inputs
-
-
-def replayed_ticks(run: Run, inputs: Records, points: Records) -> Iterator[tuple[int, float]]:
-    """Deliver each tick's messages and yield (tick, now) for the ticks that gave a command.
-
-    A trajectory of fewer than two points or with a value that is not finite is refused: the
-    longitudinal controller keeps the one before.
+    The firmware takes the operation mode as received from the start: STOP, enabled.
     """
+    follower.offer_operation_mode(Mode.STOP, True)
     for tick in range(run.ticks):
-        if new_trajectory(run, tick):
-            message = trajectory(run, tick)
-            inputs[0].trajectory_stamp = run.traj_select[tick, 3]
-            if is_acceptable(message):
-                points[: len(message)] = message
-                inputs[0].n_points = len(message)
-                inputs[0].trajectory_id += 1
-        deliver(run, tick, inputs)
+        if run.has_new_trajectory(tick):
+            follower.offer_trajectory(run.trajectory(tick), float(run.traj_select[tick, 3]))
+        _offer(run, tick, follower)
         if run.output["published"][tick]:
             yield tick, float(run.state["t"][tick])
 
 
-def is_acceptable(message: Records) -> bool:
-    """Two points or more, and every value finite that the longitudinal controller checks."""
-    checked = ("x", "y", "z", "qx", "qy", "qz", "qw", "v", "v_lat", "acc", "heading_rate")
-    return len(message) >= 2 and all(bool(np.isfinite(message[name]).all()) for name in checked)
+def _offer(run: Recording, tick: int, follower: TrajectoryFollower) -> None:
+    row = {name: float(column[tick]) for name, column in run.state.items()}
+    mask = run.deliver_mask[tick]
+    if mask & ODOMETRY:
+        follower.offer_odometry(*(row[name] for name in _ODOMETRY_COLUMNS))
+    if mask & STEERING:
+        follower.offer_steering(row["steer"])
+    if mask & ACCELERATION:
+        follower.offer_acceleration(row["ax"])
+    if mask & OPERATION_MODE:
+        follower.offer_operation_mode(int(row["mode"]), bool(row["enabled"]))

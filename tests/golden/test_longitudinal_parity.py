@@ -8,22 +8,10 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from safety_island.control.longitudinal import longitudinal_step
-from safety_island.control.longitudinal_state import (
-    new_longitudinal_state,
-    new_longitudinal_work,
-    reset_longitudinal_trace,
-)
-from safety_island.control.records import COMMAND, TRACE, new_points, pack_parameters
-from tests.golden.harness import (
-    Run,
-    bench_paths,
-    first_inputs,
-    load_run,
-    parameters_of,
-    replayed_ticks,
-    run_paths,
-)
+from safety_island.control.follower import TrajectoryFollower
+from safety_island.control.records import COMMAND, TRACE
+from safety_island.replay.recording import Recording, load
+from tests.golden.harness import name_of, parameters_of, played, recorded, run_paths
 
 TRACED = [
     "lon_state",
@@ -63,29 +51,22 @@ TOLERANCE_COMMAND = 1e-7
 Columns = dict[str, npt.NDArray[np.float64]]
 
 
-def replay(run: Run) -> Columns:
+def replay(run: Recording) -> Columns:
     """Replay a run with the recorded convergence of the previous tick."""
-    longitudinal_step.prepare()
-    params, points, work = (
-        pack_parameters(parameters_of(run)),
-        new_points(),
-        new_longitudinal_work(),
-    )
-    inputs, state = first_inputs(), new_longitudinal_state()
-    command, trace = np.zeros(1, COMMAND), np.zeros(1, TRACE)
-    reset_longitudinal_trace(trace)
+    follower = TrajectoryFollower(parameters_of(run))
     converged = run.output.get("is_steer_converged", np.zeros(run.ticks))  # not read in motion
     traces, commands = np.zeros(run.ticks, TRACE), np.zeros(run.ticks, COMMAND)
-    for tick, now in replayed_ticks(run, inputs, points):
-        longitudinal_step.call(params, points, inputs, state, work, command, trace, now)
-        traces[tick], commands[tick] = trace[0], command[0]
-        state[0].is_steer_converged = bool(converged[tick])
+    for tick, now in played(run, follower):
+        follower.run_longitudinal(now)
+        traces[tick], commands[tick] = follower.trace[0], follower.command[0]
+        follower.trace[0].is_steer_converged = bool(converged[tick])
+        follower.sync()
     return {name: traces[name].astype(float) for name in TRACED} | {
         name: commands[name].astype(float) for name in COMMANDED
     }
 
 
-def difference(run: Run, result: Columns) -> str:
+def difference(run: Recording, result: Columns) -> str:
     """The first tick that differs, with every column that does; empty when none does."""
     published = run.output["published"] > 0
     first = run.ticks
@@ -101,16 +82,14 @@ def difference(run: Run, result: Columns) -> str:
     return f"{run.name} tick {first}: " + "; ".join(lines) if lines else ""
 
 
-@pytest.mark.parametrize(
-    "path", run_paths() + bench_paths(), ids=lambda path: f"{path.parent.name}/{path.stem}"
-)
+@pytest.mark.parametrize("path", run_paths(), ids=name_of)
 def test_every_column_is_the_firmwares(path: Path) -> None:
-    run = load_run(path)
+    run = load(path)
     assert difference(run, replay(run)) == ""
 
 
 def test_a_difference_is_told_with_its_first_tick_and_columns() -> None:
-    run = load_run(run_paths("curve/ctrl0.15_unconstraint_fast.npz")[0])
+    run = recorded("curve/ctrl0.15_unconstraint_fast")
     result = replay(run)
     result["pid_p"][7] += 1e-3
     result["prev_acc"][[7, 9]] += 1e-3
