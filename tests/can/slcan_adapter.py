@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import select
 import threading
 import tty
@@ -10,6 +11,7 @@ import tty
 from safety_island.platform.interfaces import CanFrame
 
 OK, SENT, ERROR = b"\r", b"z\r", b"\a"
+WHOLE = re.compile(r"t[0-9A-F]{3}8[0-9A-F]{16}")
 
 
 class SlcanAdapter:
@@ -72,7 +74,7 @@ class SlcanAdapter:
             return b""
         self.commands.append(line)
         if line[0] == "t":
-            if not self.is_open:
+            if not self.is_open or not WHOLE.fullmatch(line):
                 return ERROR
             self.frames.append(CanFrame(int(line[1:4], 16), bytes.fromhex(line[5:])))
             return SENT

@@ -84,7 +84,6 @@ def test_after_reopening_only_new_frames_arrive(link: BusLink, peer: Peer) -> No
     heard(peer, 3)
     link.reopen()
     assert until(lambda: not link.is_opening)
-    link.discard()
     assert link.send(triple(2), BUDGET_S).result is CanResult.SENT
     assert heard(peer, 6) == [*triple(1), *triple(2)]
 

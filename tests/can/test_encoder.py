@@ -184,7 +184,9 @@ def test_jerk_must_be_finite_only_when_it_is_defined() -> None:
 def test_a_rejection_says_what_is_allowed() -> None:
     found = encode(Command(velocity=3e6), MODE, 0, 0)
     assert isinstance(found, Rejection)
-    assert found.describe() == "velocity is 3000000, expected -2147483.648 to 2147483.647 m/s"
+    assert found.describe() == (
+        "velocity is 3000000, expected -2147483.648 to 2147483.647 m/s (int32 after scaling)"
+    )
 
 
 @pytest.mark.parametrize(("sequence", "sent"), [(0, 0), (65535, 65535), (65536, 0), (65537, 1)])

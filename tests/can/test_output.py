@@ -171,6 +171,15 @@ def test_an_open_failure_at_the_start_is_told_once_and_mended() -> None:
     assert len(rig.log.lines) == 2
 
 
+def test_closing_throws_away_what_waits_only_behind_a_bus_in_trouble(rig: OutputRig) -> None:
+    rig.tick()
+    rig.output.close()
+    assert rig.bus.discarded == 0
+    rig.tick()
+    rig.output.close()
+    assert rig.bus.discarded == 1
+
+
 def test_the_budget_reaches_the_bus(rig: OutputRig) -> None:
     budgets: list[float] = []
     send = rig.bus.send

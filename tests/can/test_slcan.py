@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Iterator
 
@@ -31,6 +32,7 @@ def link(adapter: SlcanAdapter) -> Iterator[BusLink]:
     spec = parse_spec(f"slcan:{adapter.path},bitrate=500000,sleep_after_open=0")
     made = new_link(spec, time.monotonic_ns)
     made.open()
+    assert until(lambda: adapter.commands.count("O") == 2)  # python-can says it twice
     yield made
     adapter.resume()
     made.close()
@@ -42,6 +44,16 @@ def test_the_bytes_on_the_line(link: BusLink, adapter: SlcanAdapter) -> None:
     sent = [line for line in adapter.commands if line[0] == "t"]
     assert sent == [f"t{line[:3]}8{line[4:]}" for line in REFERENCE_LINES]
     assert "S6" in adapter.commands
+
+
+def test_a_line_that_was_cut_is_ended_before_the_next(link: BusLink, adapter: SlcanAdapter) -> None:
+    descriptor = os.open(adapter.path, os.O_WRONLY | os.O_NOCTTY)
+    os.write(descriptor, b"t1008AA")
+    os.close(descriptor)
+    link.discard()
+    assert link.send(triple(), 1.0).result is CanResult.SENT
+    assert until(lambda: len(adapter.frames) == 3)
+    assert adapter.frames == list(triple())
 
 
 def test_a_line_that_is_stuck_costs_no_more_than_the_budget(

@@ -28,7 +28,8 @@ class Rejection(NamedTuple):
         """Say what was found and what was expected."""
         if self.cause is Cause.NOT_FINITE:
             return f"{self.signal} is {self.value}, expected a finite number"
-        return f"{self.signal} is {self.value:.10g}, expected {limits_text(self.signal)}"
+        allowed = limits_text(self.signal)
+        return f"{self.signal} is {self.value:.10g}, expected {allowed} (int32 after scaling)"
 
 
 def quantise(value: float, signal: Signal) -> int | Cause:

@@ -39,7 +39,8 @@ class DirectLink:
 
 
 def renew(device: BusDevice) -> bool:
-    """Close a device and open it again; tell whether that succeeded."""
+    """Close a device, throwing away what waits, and open it again; tell whether it is open."""
+    device.discard()
     device.close()
     try:
         device.open()

@@ -77,9 +77,12 @@ class _CountedLines:
         self.number = 0
 
     def __iter__(self) -> Iterator[str]:
-        for line in self._lines:
-            self.number += 1
-            yield line
+        return self
+
+    def __next__(self) -> str:
+        line: str = next(self._lines)
+        self.number += 1
+        return line
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._lines, name)

@@ -96,9 +96,12 @@ class CanOutput:
         return self._judge(delivery, now_s)
 
     def close(self) -> None:
-        """Give the bus back."""
-        if self._link is not None:
-            self._link.close()
+        """Give the bus back; what waits behind a bus in trouble does not leave any more."""
+        if self._link is None:
+            return
+        if self._recovery.failures:
+            self._link.discard()
+        self._link.close()
 
     def _reject(self, rejection: Rejection) -> Cause:
         self.counters.rejected += 1

@@ -48,8 +48,9 @@ class PythonCanDevice:
             refuse_without_carrier(self.spec.channel)
         if self._is_held_back(self._draining):
             raise CanError(f"CAN bus '{self.spec}' still holds frames of an older command")
-        _close(self._draining)
-        self._draining = None
+        if self._draining is not None:
+            close_bus(self._draining)
+            self._draining = None
         self._bus = open_bus(self.spec, **_defaults(self._backend))
 
     def send(self, frame: CanFrame, budget_s: float) -> CanResult:
@@ -95,7 +96,7 @@ class PythonCanDevice:
     def discard(self) -> None:
         """Throw away what waits to be sent, as far as the driver can."""
         if self._bus is not None:
-            discard_output(self._bus)
+            discard_output(self._bus, self.spec)
 
     def close(self) -> None:
         """Close the bus; a second call does nothing."""
@@ -103,8 +104,8 @@ class PythonCanDevice:
         self._sent.clear()
         if self._is_held_back(bus):
             self._draining = bus
-        else:
-            _close(bus)
+        elif bus is not None:
+            close_bus(bus)
 
     def _events(self, message: can.Message) -> list[BusEvent]:
         if message.is_error_frame:
@@ -120,11 +121,6 @@ class PythonCanDevice:
 
     def _is_held_back(self, bus: Any) -> bool:
         return bus is not None and self._backend.kernel_queue and is_held_back(bus.socket)
-
-
-def _close(bus: can.BusABC | None) -> None:
-    if bus is not None:
-        close_bus(bus)
 
 
 def _defaults(backend: Backend) -> dict[str, Any]:

@@ -65,7 +65,7 @@ def open_bus(spec: BusSpec, **defaults: Any) -> can.BusABC:
         raise CanError(f"CAN bus '{spec}' cannot be opened: {reason_of(error)}; {hint}") from error
 
 
-def discard_output(bus: can.BusABC) -> None:
+def discard_output(bus: can.BusABC, spec: BusSpec) -> None:
     """Throw away what waits to be sent, as far as the driver and the serial line can."""
     with suppress(Exception):  # NotImplementedError for most, anything for a dead device
         bus.flush_tx_buffer()
@@ -73,11 +73,12 @@ def discard_output(bus: can.BusABC) -> None:
         descriptor = bus.fileno()
         if os.isatty(descriptor):
             termios.tcflush(descriptor, termios.TCOFLUSH)
+            if spec.backend == "slcan":
+                os.write(descriptor, b"\r")  # ends the line that was perhaps cut
 
 
 def close_bus(bus: can.BusABC) -> None:
-    """Close a bus, whatever state it is in; what waits to be sent does not leave any more."""
-    discard_output(bus)
+    """Close a bus, whatever state it is in."""
     with suppress(Exception):  # a device that is gone cannot be told goodbye
         bus.shutdown()
 
