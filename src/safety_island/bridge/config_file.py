@@ -82,11 +82,12 @@ def read_bridge_file(path: str) -> BridgeFile:
     name = DEFAULT_NAME if name is None else name
     if not _NODE_NAME.fullmatch(name):
         top.place("name").refuse(f"name is '{name}', expected letters, digits and underscores")
+    mode = cast(Mode, top.choice("mode", MODES) or "normal")
     defaults = _domain(top, "from_domain"), _domain(top, "to_domain")
     entries = tuple(
         _entry(path, key, where, node, defaults) for key, where, node in _topics(top).entries()
     )
-    return BridgeFile(path, name, cast(Mode, top.choice("mode", MODES) or "normal"), entries)
+    return BridgeFile(path, name, mode, entries)
 
 
 def _topics(top: Section) -> Section:

@@ -1,0 +1,87 @@
+"""The shipped bridge file and CycloneDDS configuration."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+
+import pytest
+
+from safety_island.bridge.config_file import read_bridge_file
+from safety_island.bridge.island_file import render
+from safety_island.bridge.routes import Route, plan_routes
+from safety_island.dds.config import URI, DdsConfig
+from safety_island.dds.participant import Participant
+from safety_island.dds.topics import BRIDGED
+from safety_island.errors import ConfigurationError
+
+DEMO = Path(__file__).parents[2] / "demo"
+SHIPPED = DEMO / "bridge" / "bridge-config.yaml"
+CYCLONE = DEMO / "cyclonedds.xml"
+NAMESPACE = "{https://cdds.io/config}"
+
+Plain = set[tuple[int, str, int, str, str]]
+
+
+def _routes(path: Path) -> list[Route]:
+    return plan_routes([read_bridge_file(str(path))])
+
+
+def _plain(routes: list[Route]) -> Plain:
+    return {(*route.source, *route.target, route.type_name) for route in routes}
+
+
+def test_the_shipped_file_is_the_table_of_topics() -> None:
+    """Exactly the six topics of the contract, in both directions."""
+    table = {
+        (topic.bridged[0], topic.name, topic.bridged[1], topic.name, topic.type_name)
+        for topic in BRIDGED
+        if topic.bridged is not None
+    }
+    routes = _routes(SHIPPED)
+    assert _plain(routes) == table
+    assert len(routes) == 6
+    assert sum(route.source[0] == 1 for route in routes) == 5
+
+
+def test_the_shipped_file_matches_the_publishers() -> None:
+    for route in _routes(SHIPPED):
+        assert (route.qos.reliability, route.qos.durability, route.mode) == (None, None, "normal")
+
+
+def test_the_same_topics_for_other_domains(tmp_path: Path) -> None:
+    path = tmp_path / "bridge.yaml"
+    path.write_text(render(1, 2))
+    assert _plain(_routes(path)) == _plain(_routes(SHIPPED))
+    path.write_text(render(41, 17))
+    assert {(route.source[0], route.target[0]) for route in _routes(path)} == {(41, 17), (17, 41)}
+
+
+def _setting(domain: str, *names: str) -> list[str | None]:
+    root = ElementTree.parse(CYCLONE).getroot()
+    path = "/".join(NAMESPACE + name for name in names)
+    found = root.findall(f"{NAMESPACE}Domain[@Id='{domain}']/{path}")
+    return [element.text for element in found]
+
+
+def test_cyclone_settings_are_those_of_the_contract() -> None:
+    assert _setting("any", "General", "AllowMulticast") == ["spdp"]
+    assert _setting("any", "General", "MaxMessageSize") == ["1400B"]
+    root = ElementTree.parse(CYCLONE).getroot()
+    pinned = {
+        domain.get("Id"): interface.get("name")
+        for domain in root
+        for interface in domain.iter(f"{NAMESPACE}NetworkInterface")
+    }
+    assert pinned == {"2": "tap0"}
+
+
+def test_a_machine_without_tap0_gets_a_clear_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(URI, f"file://{CYCLONE}")
+    with pytest.raises(ConfigurationError, match="tap0"):
+        Participant(2)
+
+
+def test_other_domains_of_the_file_work(monkeypatch: pytest.MonkeyPatch, domain_id: int) -> None:
+    monkeypatch.setenv(URI, f"file://{CYCLONE}")
+    Participant(domain_id, DdsConfig()).close()
