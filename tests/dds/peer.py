@@ -25,7 +25,14 @@ ROOT = Path(__file__).parents[2]
 @contextmanager
 def peer(role: str, domain_id: int, *arguments: str) -> Iterator[subprocess.Popen[str]]:
     """Run a peer; the context ends it."""
-    command = [sys.executable, "-m", "tests.dds.peer", role, str(domain_id), *arguments]
+    with module("tests.dds.peer", role, str(domain_id), *arguments) as process:
+        yield process
+
+
+@contextmanager
+def module(name: str, *arguments: str) -> Iterator[subprocess.Popen[str]]:
+    """Run a module of this repository; the context ends it."""
+    command = [sys.executable, "-m", name, *arguments]
     environment = {"PYTHONPATH": f"{ROOT / 'src'}:{ROOT}", "PATH": ""}
     with subprocess.Popen(
         command,

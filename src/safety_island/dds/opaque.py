@@ -60,10 +60,8 @@ class _Vector(ct.Structure):
 
 
 def _function(name: str, result: Any, *arguments: Any) -> Any:
-    found = getattr(_library, name)
-    found.restype = result
-    found.argtypes = arguments
-    return found
+    """Return a C function with a prototype of its own: cyclonedds sets others on the library."""
+    return ct.CFUNCTYPE(result, *arguments)((name, _library))
 
 
 _entity = dds_c_t.entity
