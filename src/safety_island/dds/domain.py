@@ -111,7 +111,7 @@ def _start(domain_id: int, xml: str) -> Domain:
 def _explain(domain_id: int, cause: str) -> str:
     hints = {
         "receive buffer": "allow more with: sysctl -w net.core.rmem_max=BYTES",
-        "available interface": "choose an interface that exists",
+        "available interface": "choose an interface that exists, is up and has an IPv4 address",
         "participant index": "too many participants of this domain run on this machine",
         "unknown element": f"correct the XML in {URI}",
     }

@@ -67,6 +67,12 @@ class Participant:
         self._presence = self._publisher(PRESENCE_TOPIC, PRESENCE_TYPE, PRESENCE_QOS)
         self._announce()
 
+    @property
+    def handle(self) -> int:
+        """The library's number of this participant, for its C functions."""
+        handle: int = self._participant._ref
+        return handle
+
     def publisher(self, topic: str, type_name: str, qos: Qos = DEFAULT) -> Publisher:
         """Return a new publisher on a ROS topic (``/a/b``) of a ROS type (``pkg/msg/Name``)."""
         publisher = self._publisher(dds_topic_name(topic), type_name, qos)
