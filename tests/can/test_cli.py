@@ -7,12 +7,13 @@ import subprocess
 import sys
 import threading
 import time
+from collections.abc import Generator
 from pathlib import Path
 
 import can
 import pytest
 
-from safety_island.can.candump import format_line
+from safety_island.can.candump import LogEntry, format_line
 from safety_island.can.dbc import dbc_text
 from safety_island.cli.main import main
 from tests.can.peers import ROOT
@@ -90,6 +91,7 @@ def test_send_rejects_before_a_frame_exists(arguments: str, message: str, capsys
         ("--sequence -1", "not a whole number"),
         ("--stamp -1", "'-1' is not a stamp in seconds"),
         ("--stamp nan", "is not a stamp"),
+        ("--stamp noon", "'noon' is not a stamp"),
         ("--mode CAN", "invalid choice: 'CAN'"),
         ("--can mock --print", "not allowed with argument"),
         ("--can nothing:x", "unknown CAN backend 'nothing'"),
@@ -234,6 +236,43 @@ def test_monitor_watches_a_live_bus(form: list[str], capsys: Capture) -> None:
     else:
         assert "steering_tire_angle 0.125000 rad" in out
         assert "complete commands" in out
+
+
+def test_monitor_ends_with_its_findings_when_it_is_interrupted(
+    capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupted(spec: object) -> Generator[LogEntry | None, None, None]:
+        for frame in triple():
+            yield LogEntry(12.345, frame)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("safety_island.can.live.watch", interrupted)
+    assert island("monitor", "--can", "virtual:x") == 0
+    assert "#42" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("form", [[], ["--json"]])
+def test_monitor_shows_the_state_each_second(
+    form: list[str], capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("safety_island.cli.can_monitor._REFRESH_NS", 0)
+    arguments = ("monitor", "--can", "virtual:quiet", "--duration", "0.25", *form)
+    assert island(*arguments) == 0
+    shown = capsys.readouterr().out.splitlines()
+    assert len([line for line in shown if "null" in line or "no command yet" in line]) >= 2
+
+
+def test_monitor_on_a_terminal_renews_its_picture(
+    capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("sys.stdout.isatty", lambda: True)
+    assert island("monitor", "--can", "virtual:quiet", "--duration", "0.01") == 0
+    assert "no command yet" in capsys.readouterr().out
+
+
+def test_monitor_of_a_bus_that_fails(capsys: Capture) -> None:
+    assert island("monitor", "--can", "socketcan:can0", "--duration", "0.1") == 1
+    assert "'socketcan:can0' cannot be opened" in capsys.readouterr().err
 
 
 def test_monitor_of_a_quiet_bus(capsys: Capture) -> None:

@@ -124,6 +124,12 @@ def test_row_70_other_changes_are_found(old: str, new: str, difference: str) -> 
     assert any(difference in line for line in found), found
 
 
+def test_row_70_what_only_the_round_trip_shows_is_found() -> None:
+    """A signal that is a float by an attribute of its own, with every other field unchanged."""
+    found = check_dbc(dbc_text() + "SIG_VALTYPE_ 256 steering_tire_angle : 1;\n")
+    assert any("0x100 steering_tire_angle: decodes to" in line for line in found), found
+
+
 def test_row_70_overlapping_signals_are_found() -> None:
     mutant = dbc_text().replace("rotation_rate : 32|32", "rotation_rate : 16|32")
     (difference,) = check_dbc(mutant)

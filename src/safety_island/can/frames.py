@@ -23,22 +23,13 @@ class Signal(NamedTuple):
     scale: int
     unit: str
     meaning: str
-    choices: tuple[tuple[int, str], ...] = ()
-
-    @property
-    def mask(self) -> int:
-        """A one for each bit."""
-        return (1 << self.bits) - 1
-
-    @property
-    def lowest(self) -> int:
-        """Lowest raw value."""
-        return -(1 << (self.bits - 1)) if self.signed else 0
-
-    @property
-    def highest(self) -> int:
-        """Highest raw value."""
-        return (1 << (self.bits - 1 if self.signed else self.bits)) - 1
+    choices: tuple[tuple[int, str], ...]
+    mask: int
+    """A one for each bit."""
+    lowest: int
+    """Lowest raw value."""
+    highest: int
+    """Highest raw value."""
 
 
 class Frame(NamedTuple):
@@ -50,12 +41,29 @@ class Frame(NamedTuple):
     signals: tuple[Signal, ...]
 
 
+def _signal(
+    name: str,
+    start_bit: int,
+    bits: int,
+    unit: str,
+    meaning: str,
+    signed: bool = False,
+    scale: int = 1,
+    choices: tuple[tuple[int, str], ...] = (),
+) -> Signal:
+    mask = (1 << bits) - 1
+    lowest, highest = (-(mask // 2) - 1, mask // 2) if signed else (0, mask)
+    return Signal(
+        name, start_bit, bits, signed, scale, unit, meaning, choices, mask, lowest, highest
+    )
+
+
 def _value(name: str, start_bit: int, scale: int, unit: str, meaning: str) -> Signal:
-    return Signal(name, start_bit, 32, True, scale, unit, meaning)
+    return _signal(name, start_bit, 32, unit, meaning, signed=True, scale=scale)
 
 
 def _flag(name: str, start_bit: int, meaning: str) -> Signal:
-    return Signal(name, start_bit, 1, False, 1, "", meaning)
+    return _signal(name, start_bit, 1, "", meaning)
 
 
 _MODES = tuple((mode.value, mode.name) for mode in OutputMode)
@@ -83,13 +91,13 @@ STATUS = Frame(
     "COMMAND_STATUS",
     "Third frame of a command: what the two before it mean and when they were made.",
     (
-        Signal("mode", 0, 8, False, 1, "", "Output mode of the island.", _MODES),
+        _signal("mode", 0, 8, "", "Output mode of the island.", choices=_MODES),
         _flag("steering_rate_defined", 8, "1: steering_tire_rotation_rate is part of the command."),
         _flag("acceleration_defined", 9, "1: acceleration is part of the command."),
         _flag("jerk_defined", 10, "1: the DDS command has a jerk (no frame carries it)."),
         _flag("frame_valid", 11, "Always 1."),
-        Signal("sequence", 16, 16, False, 1, "", "Number of the command, wraps after 65535."),
-        Signal("timestamp", 32, 32, False, 1, "ms", "Stamp of the command modulo 2^32."),
+        _signal("sequence", 16, 16, "", "Number of the command, wraps after 65535."),
+        _signal("timestamp", 32, 32, "ms", "Stamp of the command modulo 2^32."),
     ),
 )
 
