@@ -8,9 +8,11 @@ does not compile; that private option is one reason for the exact version pin.
 
 from __future__ import annotations
 
+import fcntl
 import hashlib
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -46,6 +48,16 @@ def cache_folder() -> Path:
     default = (Path(home) if home else Path("~/.cache").expanduser()) / "safety-island"
     root = Path(os.environ.get("SAFETY_ISLAND_CACHE") or default)
     return root / f"kernels-{source_hash()}"
+
+
+@contextmanager
+def _one_at_a_time() -> Iterator[None]:
+    """Let one process compile; the next one waits, and finds the result on disk."""
+    folder = cache_folder()
+    folder.mkdir(parents=True, exist_ok=True)
+    with (folder / "lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
 
 
 def _njit(**options: Any) -> Callable[[Any], Any]:
@@ -94,7 +106,8 @@ class Entry:
     def prepare(self) -> None:
         """Compile, or load the compiled code from disk; then refuse any other argument type."""
         if self._dispatcher is not None and self.call is self.python:
-            self._dispatcher.compile(self.signature())
+            with _one_at_a_time():
+                self._dispatcher.compile(self.signature())
             self._dispatcher.disable_compile()
             self.call = self._dispatcher
 
