@@ -14,7 +14,6 @@ from typing import Any
 import pytest
 
 from safety_island.bridge import BridgeOptions, run
-from safety_island.bridge.island_file import render
 from safety_island.dds.config import DdsConfig
 from safety_island.dds.participant import Participant
 from safety_island.dds.topics import ODOMETRY
@@ -22,6 +21,7 @@ from safety_island.errors import ConfigurationError
 from safety_island.messages import codec
 from tests.dds.waiting import wait_for
 
+SHIPPED = Path(__file__).parents[2] / "demo" / "bridge" / "bridge-config.yaml"
 LOOPBACK = DdsConfig(loopback_only=True)
 SAMPLE = codec.encode(ODOMETRY.type_name, {})
 PROGRAM = """
@@ -45,8 +45,12 @@ def _process(path: Path) -> Iterator[subprocess.Popen[str]]:
 
 
 def _file(folder: Path, pair: tuple[int, int]) -> Path:
+    """The shipped file between two domains of the test."""
+    text = SHIPPED.read_text()
+    for shipped, domain in zip("12", pair, strict=True):
+        text = text.replace(f"_domain: {shipped}\n", f"_domain: {domain} \n")
     path = folder / "bridge.yaml"
-    path.write_text(render(*pair))
+    path.write_text(text)
     return path
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -29,6 +30,7 @@ from safety_island.messages.outputs import decode_control
 from safety_island.messages.trajectory import encode_trajectory
 from safety_island.messages.wire import Time
 from safety_island.platform.interfaces import Clock
+from safety_island.platform.posix.clock import PosixClock
 from safety_island.sim.courses import DEFAULT_COURSE, load_course
 from safety_island.sim.world import World
 
@@ -70,7 +72,7 @@ class MainCompute:
 
     def __init__(self, world: World, participant: Participant, clock: Clock) -> None:
         self.world, self.clock = world, clock
-        self.refused = 0
+        self.refused = 0  # commands that are no Control, or not finite
         self._participant = participant
         self._odometry = self._publisher(topics.ODOMETRY)
         self._steering = self._publisher(topics.STEERING)
@@ -94,8 +96,11 @@ class MainCompute:
         except DecodeError:
             self.refused += 1
             return
-        now = self.clock.monotonic_ns() * 1e-9
-        self.world.offer_command(now, command.steering_tire_angle, command.acceleration)
+        angle, acceleration = command.steering_tire_angle, command.acceleration
+        if math.isfinite(angle) and math.isfinite(acceleration):
+            self.world.offer_command(self.clock.monotonic_ns() * 1e-9, angle, acceleration)
+        else:
+            self.refused += 1
 
     def publish_vehicle(self) -> None:
         """Publish mode (when it changed), steering, acceleration and odometry of this moment."""
@@ -139,7 +144,7 @@ class MainCompute:
 def run(
     options: MainComputeOptions,
     stop: StopEvent,
-    clock: Clock,
+    clock: Clock | None = None,
     report: Report | None = None,
     say: Callable[[str], None] | None = None,
 ) -> int:
@@ -147,6 +152,7 @@ def run(
 
     Raises ConfigurationError for an unknown course and for what DDS cannot use.
     """
+    clock = clock or PosixClock()
     course = load_course(options.course)
     participant = Participant(options.domain, options.dds, NODE_NAME)
     start = clock.monotonic_ns() * 1e-9

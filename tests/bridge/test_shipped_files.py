@@ -8,7 +8,6 @@ from pathlib import Path
 import pytest
 
 from safety_island.bridge.config_file import read_bridge_file
-from safety_island.bridge.island_file import render
 from safety_island.bridge.routes import Route, plan_routes
 from safety_island.dds.config import URI, DdsConfig
 from safety_island.dds.participant import Participant
@@ -47,14 +46,6 @@ def test_the_shipped_file_is_the_table_of_topics() -> None:
 def test_the_shipped_file_matches_the_publishers() -> None:
     for route in _routes(SHIPPED):
         assert (route.qos.reliability, route.qos.durability, route.mode) == (None, None, "normal")
-
-
-def test_the_same_topics_for_other_domains(tmp_path: Path) -> None:
-    path = tmp_path / "bridge.yaml"
-    path.write_text(render(1, 2))
-    assert _plain(_routes(path)) == _plain(_routes(SHIPPED))
-    path.write_text(render(41, 17))
-    assert {(route.source[0], route.target[0]) for route in _routes(path)} == {(41, 17), (17, 41)}
 
 
 def _setting(domain: str, *names: str) -> list[str | None]:
