@@ -120,7 +120,7 @@ def test_a_string_without_nul_or_not_utf8_is_refused() -> None:
     name = "std_msgs/msg/Header"
     good = codec.encode(name, {"frame_id": "map"})
     assert codec.decode(name, good[:-8] + bytes(4))["frame_id"] == ""
-    for end in (b"mapx", b"m\xffp\0"):
+    for end in (b"mapx", b"m\0p\0", b"m\xffp\0"):
         with pytest.raises(DecodeError) as refused:
             codec.decode(name, good[:-4] + end)
         assert refused.value.reason is DecodeReason.STRING

@@ -14,13 +14,22 @@ from hypothesis import strategies as st
 
 from safety_island.messages import codec, registry
 from safety_island.messages.errors import DecodeError, DecodeReason
+from safety_island.messages.inputs import ODOMETRY, decode_odometry
 from safety_island.messages.trajectory import TRAJECTORY, decode_trajectory, view_trajectory
+from tests.messages.oracle import rosbags_bytes
 from tests.messages.samples import Hot, hot_messages, trajectory_bytes
 
 REFUSED = "refused"
 LENGTHS = (0, 1, 2, 3, 4, 255, 2**16, 2**28, 2**31 - 1, 2**31, 2**32 - 8, 2**32 - 1)
 
 each_hot = pytest.mark.parametrize("hot", hot_messages(), ids=lambda hot: hot.name)
+
+
+@pytest.fixture
+def big_endian_odometry() -> bytes:
+    message = codec.default(ODOMETRY)
+    message["child_frame_id"] = "base_link"
+    return rosbags_bytes(ODOMETRY, message, little_endian=False)
 
 
 def outcome(decode: Callable[[bytes], Any], data: bytes) -> Any:
@@ -71,6 +80,13 @@ def test_every_bit_flip_of_a_trajectory_of_100_points() -> None:
     assert sizes == {0, 100}
 
 
+def test_a_big_endian_message_is_damaged_as_safely(big_endian_odometry: bytes) -> None:
+    for bit in range(len(big_endian_odometry) * 8):
+        data = bytearray(big_endian_odometry)
+        data[bit // 8] ^= 1 << bit % 8
+        outcome(decode_odometry, bytes(data))
+
+
 @pytest.mark.parametrize("length", LENGTHS)
 @pytest.mark.parametrize("place", [12, 20])
 def test_absurd_lengths_allocate_nothing(length: int, place: int) -> None:
@@ -109,6 +125,7 @@ def test_options_of_the_header_and_padding_do_not_matter(hot: Hot) -> None:
 def test_junk_is_refused_or_read(hot: Hot, junk: bytes) -> None:
     outcome(hot.decode, junk)
     outcome(hot.decode, b"\0\1\0\0" + junk)
+    outcome(hot.decode, b"\0\0\0\0" + junk)
     outcome(lambda data: codec.decode(hot.name, data), b"\0\0\0\0" + junk)
 
 

@@ -17,7 +17,7 @@ class DecodeReason(StrEnum):
     LENGTH = "length"
     """A string or sequence is longer than its type or the receiver allows."""
     STRING = "string"
-    """A string lacks its closing NUL or is not UTF-8."""
+    """A string lacks its closing NUL, has another before it, or is not UTF-8."""
     BOOLEAN = "boolean"
     """A boolean is neither 0 nor 1."""
     TRAILING = "trailing"

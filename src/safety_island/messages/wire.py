@@ -118,8 +118,8 @@ def string_body(data: bytes, start: int, length: int, type_name: str) -> str:
         raise truncated(type_name, end, len(data))
     if length == 0:
         return ""
-    if data[end - 1] != 0:
-        raise DecodeError(DecodeReason.STRING, type_name, "a string has no closing NUL")
+    if data.find(0, start, end) != end - 1:
+        raise DecodeError(DecodeReason.STRING, type_name, "a string does not end at its first NUL")
     try:
         return str(data[start : end - 1], "utf-8")
     except UnicodeDecodeError:
