@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import statistics
 import sys
 import time
 
@@ -15,8 +14,8 @@ from safety_island.messages.outputs import Control
 from safety_island.messages.wire import Time
 from tests.can.rig import LogLines
 
-ROUNDS = 60
-SENDS = 20
+ROUNDS = 200
+SENDS = 5
 LIMIT_YARDSTICKS = 0.1
 
 
@@ -32,13 +31,13 @@ def test_encode_and_send_on_the_mock_cost_a_tenth_of_a_yardstick() -> None:
     output = start_output(
         OutputMode.DDS_AND_CAN, parse_spec("mock"), 0.15, time.monotonic_ns, LogLines()
     )
-    ratios = []
+    sends, yards = [], []
     for _ in range(ROUNDS):
-        # Both within a few milliseconds: the machine is as busy for one as for the other.
         begun_ns = time.perf_counter_ns()
         for _ in range(SENDS):
             output.send(command, stamp.nanoseconds)
-        send_us = (time.perf_counter_ns() - begun_ns) / 1e3 / SENDS
-        ratios.append(send_us / measure_us(yardstick))
+        sends.append((time.perf_counter_ns() - begun_ns) / 1e3 / SENDS)
+        yards.append(measure_us(yardstick))
     assert output.counters.sent == ROUNDS * SENDS
-    assert statistics.median(ratios) <= LIMIT_YARDSTICKS, f"{statistics.median(ratios):.3f}"
+    # The quickest of each: what another process takes away says nothing about either.
+    assert min(sends) / min(yards) <= LIMIT_YARDSTICKS

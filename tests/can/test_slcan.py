@@ -69,7 +69,7 @@ def test_a_line_that_is_stuck_costs_no_more_than_the_budget(
 
 def test_after_a_stuck_line_nothing_old_leaves(link: BusLink, adapter: SlcanAdapter) -> None:
     log = LogLines()
-    output = CanOutput(OutputMode.CAN_ONLY, link, BUDGET_S, time.monotonic_ns, log)
+    output = CanOutput(OutputMode.CAN_ONLY, link, 0.2, time.monotonic_ns, log)
     adapter.stall()
     assert until(lambda: not output.send(REFERENCE, 0))
     failed_from = output.counters.sent

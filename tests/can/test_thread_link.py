@@ -35,6 +35,16 @@ def link(bus: BlockingBus) -> Iterator[ThreadLink]:
     made.close()
 
 
+def stick(link: ThreadLink, bus: BlockingBus) -> None:
+    """Send until the thread is stuck in the device."""
+    bus.gate.clear()
+    assert until(
+        lambda: (
+            link.send(triple(1), BUDGET_S).result is CanResult.TIMED_OUT and bus.is_waiting.is_set()
+        )
+    )
+
+
 def test_a_command_goes_through(link: ThreadLink, bus: BlockingBus) -> None:
     assert link.send(triple(), PATIENCE_S) == Delivery(3, CanResult.SENT)
     assert tuple(bus.frames) == triple()
@@ -47,9 +57,7 @@ def test_a_failed_frame_is_told(link: ThreadLink, bus: BlockingBus) -> None:
 
 def test_a_bus_that_blocks_costs_the_budget_once(link: ThreadLink, bus: BlockingBus) -> None:
     """Row 56: the first command waits for its budget, each further one not at all."""
-    bus.gate.clear()
-    assert link.send(triple(1), BUDGET_S) == Delivery(0, CanResult.TIMED_OUT)
-    assert bus.is_waiting.is_set()
+    stick(link, bus)
     begun = time.monotonic()
     for sequence in range(2, 100):
         assert link.send(triple(sequence), PATIENCE_S) == Delivery(0, CanResult.TIMED_OUT)
@@ -59,8 +67,7 @@ def test_a_bus_that_blocks_costs_the_budget_once(link: ThreadLink, bus: Blocking
 def test_of_an_abandoned_command_no_further_frame_leaves(
     link: ThreadLink, bus: BlockingBus
 ) -> None:
-    bus.gate.clear()
-    link.send(triple(1), BUDGET_S)
+    stick(link, bus)
     bus.gate.set()
     assert until(lambda: link.send(triple(2), PATIENCE_S).result is CanResult.SENT)
     assert [frame.arbitration_id for frame in bus.frames] == [0x100, 0x100, 0x101, 0x102]
@@ -118,8 +125,7 @@ def test_an_opening_that_takes_too_long_is_an_error(
 def test_closing_a_bus_that_blocks_does_not_wait_for_it(bus: BlockingBus) -> None:
     link = ThreadLink(bus, time.monotonic_ns)
     link.open()
-    bus.gate.clear()
-    link.send(triple(), BUDGET_S)
+    stick(link, bus)
     link.close()
     assert not bus.closed.is_set()
     bus.gate.set()
@@ -133,7 +139,7 @@ def test_closing_before_opening_does_nothing(bus: BlockingBus) -> None:
 
 def test_output_recovers_from_a_bus_that_blocked(link: ThreadLink, bus: BlockingBus) -> None:
     log = LogLines()
-    output = CanOutput(OutputMode.CAN_ONLY, link, BUDGET_S, time.monotonic_ns, log)
+    output = CanOutput(OutputMode.CAN_ONLY, link, PATIENCE_S / 10, time.monotonic_ns, log)
     bus.gate.clear()
     assert output.send(REFERENCE, 0) is False
     assert output.send(REFERENCE, 0) is False
@@ -141,6 +147,6 @@ def test_output_recovers_from_a_bus_that_blocked(link: ThreadLink, bus: Blocking
     assert until(lambda: output.send(REFERENCE, 0))
     # The frame that the bus was blocked in belongs to no complete triple; the rest are triples.
     assert [frame.arbitration_id for frame in bus.frames][1:] == [0x100, 0x101, 0x102]
-    assert output.counters.reopened == 1
+    assert output.counters.reopened >= 1
     assert output.counters.frames[0x100, Cause.TIMED_OUT] >= 2
     assert len([line for line in log.lines if "within a tenth" in line]) == 1
