@@ -51,11 +51,11 @@ def cache_folder() -> Path:
 
 
 @contextmanager
-def _one_at_a_time() -> Iterator[None]:
-    """Let one process compile; the next one waits, and finds the result on disk."""
+def _one_at_a_time(name: str) -> Iterator[None]:
+    """Let one process compile an entry; the next one waits, and finds the result on disk."""
     folder = cache_folder()
     folder.mkdir(parents=True, exist_ok=True)
-    with (folder / "lock").open("w") as lock:
+    with (folder / f"{name}.lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         yield
 
@@ -106,7 +106,7 @@ class Entry:
     def prepare(self) -> None:
         """Compile, or load the compiled code from disk; then refuse any other argument type."""
         if self._dispatcher is not None and self.call is self.python:
-            with _one_at_a_time():
+            with _one_at_a_time(self.name):
                 self._dispatcher.compile(self.signature())
             self._dispatcher.disable_compile()
             self.call = self._dispatcher
