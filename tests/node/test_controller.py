@@ -296,7 +296,7 @@ class TestFailure:
         assert rig.tick().outcome is Outcome.NOT_FINITE
         assert rig.command() is None
 
-    @pytest.mark.parametrize("place", ["offer_steering", "is_ready", "run_lateral", "sync"])
+    @pytest.mark.parametrize("place", ["missing", "is_ready", "run_lateral", "sync"])
     def test_an_exception_costs_one_tick(
         self, rig: Rig, follower: FakeFollower, monkeypatch: pytest.MonkeyPatch, place: str
     ) -> None:
@@ -312,6 +312,20 @@ class TestFailure:
         assert rig.command() is None
         rig.everything(ROWS)
         assert rig.tick().published
+
+    def test_an_exception_over_a_sample_refuses_that_sample(
+        self, rig: Rig, follower: FakeFollower, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        def fail(*_: object) -> None:
+            raise ZeroDivisionError("on purpose")
+
+        rig.everything(ROWS)
+        rig.tick()
+        monkeypatch.setattr(follower, "offer_steering", fail)
+        rig.steering()
+        assert rig.tick().published
+        assert rig.node.inputs[2].refused == {"fault": 1}
+        assert "ZeroDivisionError: on purpose" in rig.lines[-1]
 
     def test_a_failed_mpc_still_gives_a_command_and_says_why(
         self, rig: Rig, follower: FakeFollower

@@ -18,8 +18,12 @@ from safety_island.messages import inputs as codec
 from safety_island.messages.errors import DecodeError
 from safety_island.messages.trajectory import Trajectory, decode_trajectory
 from safety_island.node.follower import InputFollower
+from safety_island.node.report import describe
 from safety_island.node.transport import Subscription
 from safety_island.platform.interfaces import Logger
+
+FAULT = "fault"
+"""Reason of a refusal that no sample should be able to cause."""
 
 
 class InputSpec(NamedTuple):
@@ -99,6 +103,8 @@ class Input:
         """Monotonic time [s] of the tick that accepted the newest sample in force."""
         self.writer_guid = b""
         """Writer of the sample that was taken last."""
+        self.sent_ns = 0
+        """When that sample was written, by the writer's wall clock [ns]; only for reports."""
         self._decode = spec.decoder(follower)
         self._offer = spec.offer
         self._follower = follower
@@ -110,10 +116,13 @@ class Input:
         if sample is None:
             return True
         self.writer_guid = sample.writer_guid
+        self.sent_ns = sample.source_timestamp_ns
         try:
             verdict = self._offer(self._follower, self._decode(sample.data))
         except DecodeError as error:
             return self._refuse(error.reason, str(error))
+        except Exception as error:  # a fault of ours must not let one topic stop the ticks
+            return self._refuse(FAULT, describe(error))
         if verdict:
             reason = Refusal(verdict).name.lower()
             return self._refuse(reason, reason.replace("_", " "))

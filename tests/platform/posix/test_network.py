@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import os
+import socket
 import subprocess
 import sys
 
 import pytest
+
+from safety_island.platform import load
 
 LATE = """
 import subprocess, threading
@@ -45,3 +48,14 @@ def test_the_wait_ends_as_soon_as_the_address_is_there() -> None:
         env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
     )
     assert (run.stdout, run.stderr) == ("as expected\n", "")
+
+
+def test_without_netlink_it_still_finds_the_address(monkeypatch: pytest.MonkeyPatch) -> None:
+    def forbidden(*_: object) -> socket.socket:
+        raise PermissionError("no netlink here")
+
+    answers = iter([None, None, "10.0.0.9"])
+    network = load("posix").network
+    monkeypatch.setattr("safety_island.platform.posix.network.socket.socket", forbidden)
+    monkeypatch.setattr(network, "address", lambda name: next(answers))
+    assert network.wait_for_address("lo", limit_s=10.0) == "10.0.0.9"

@@ -6,15 +6,16 @@ import fcntl
 import select
 import socket
 import struct
-from collections.abc import Callable
-from contextlib import closing
-from functools import partial
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 
 from safety_island.platform.interfaces import Clock, NetworkError
 
 SIOCGIFFLAGS = 0x8913
 SIOCGIFADDR = 0x8915
 IFF_UP = 1
+LONGEST_NAME = 15
+"""IFNAMSIZ without the closing NUL; the kernel would take a cut name for another interface's."""
 RTMGRP_LINK = 1
 RTMGRP_IPV4_IFADDR = 0x10
 LOOK_AGAIN_S = 0.2
@@ -27,7 +28,10 @@ def _never() -> bool:
 
 def _ask(request: int, interface: str) -> bytes | None:
     """Answer of an interface ``ioctl`` after the name field; None when there is none."""
-    query = struct.pack("16s24x", interface.encode()[:15])
+    name = interface.encode()
+    if len(name) > LONGEST_NAME:
+        return None
+    query = struct.pack("16s24x", name)
     try:
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as channel:
             return fcntl.ioctl(channel.fileno(), request, query)[16:]
@@ -35,12 +39,29 @@ def _ask(request: int, interface: str) -> bytes | None:
         return None
 
 
-def _announcements() -> socket.socket:
-    """Return a socket that becomes readable when an address or a link changes."""
-    channel = socket.socket(socket.AF_NETLINK, socket.SOCK_RAW, socket.NETLINK_ROUTE)
-    channel.bind((0, RTMGRP_LINK | RTMGRP_IPV4_IFADDR))
-    channel.setblocking(False)
-    return channel
+@contextmanager
+def _announcements() -> Iterator[list[socket.socket]]:
+    """Open a socket that becomes readable when an address or a link changes.
+
+    A sandbox may forbid it: then there is none, and looking again now and then must do.
+    """
+    try:
+        channel = socket.socket(socket.AF_NETLINK, socket.SOCK_RAW, socket.NETLINK_ROUTE)
+    except OSError:
+        yield []
+        return
+    with channel:
+        channel.bind((0, RTMGRP_LINK | RTMGRP_IPV4_IFADDR))
+        channel.setblocking(False)
+        yield [channel]
+
+
+def _listen(channels: list[socket.socket], timeout_s: float) -> None:
+    """Wait for an announcement and forget its text: the question is asked anew."""
+    for channel in select.select(channels, (), (), timeout_s)[0]:
+        with suppress(OSError):  # nothing more to read, or the kernel dropped some
+            while channel.recv(65536):
+                pass
 
 
 class PosixNetwork:
@@ -71,7 +92,7 @@ class PosixNetwork:
     ) -> str | None:
         """IPv4 address of the interface, as soon as it has one; None when ``stopped()``."""
         end_ns = self._clock.monotonic_ns() + round(limit_s * 1e9)
-        with closing(_announcements()) as channel:
+        with _announcements() as channels:
             while not stopped():
                 address = self.address(interface)
                 if address is not None:
@@ -83,15 +104,5 @@ class PosixNetwork:
                         f"({self.describe(interface)}): connect it, give it an address, or name "
                         "another interface"
                     )
-                self._listen(channel, min(left_s, LOOK_AGAIN_S))
+                _listen(channels, min(left_s, LOOK_AGAIN_S))
         return None
-
-    @staticmethod
-    def _listen(channel: socket.socket, timeout_s: float) -> None:
-        """Wait for an announcement and forget its text: the question is asked anew."""
-        if select.select((channel,), (), (), timeout_s)[0]:
-            try:
-                for _ in iter(partial(channel.recv, 65536), b""):
-                    pass
-            except OSError:
-                return  # nothing more to read, or the kernel dropped some: ask all the same

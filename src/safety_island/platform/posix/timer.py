@@ -10,7 +10,7 @@ from safety_island.platform.interfaces import Clock, Tick
 
 
 class PosixTimer:
-    """Sleeps in ``select`` on a pipe, so that a signal handler can end the sleep for certain.
+    """Sleeps in ``select`` on an event counter, so that a signal handler can surely end the sleep.
 
     (A ``threading.Event`` set by a signal handler can meet its own lock.)
     """
@@ -18,9 +18,7 @@ class PosixTimer:
     def __init__(self, clock: Clock, period_s: float) -> None:
         self._clock = clock
         self._grid = Grid(period_in_ns(period_s), clock.monotonic_ns())
-        self._read_end, self._write_end = os.pipe()
-        os.set_blocking(self._read_end, False)
-        os.set_blocking(self._write_end, False)
+        self._event = os.eventfd(0)
 
     @property
     def period_ns(self) -> int:
@@ -49,19 +47,15 @@ class PosixTimer:
 
     def _was_woken(self, delay_ns: int) -> bool:
         """Sleep for a time; True when ``wake`` was called before its end."""
-        ready, _, _ = select.select((self._read_end,), (), (), delay_ns * 1e-9)
+        ready, _, _ = select.select((self._event,), (), (), delay_ns * 1e-9)
         if ready:
-            os.read(self._read_end, 4096)
+            os.eventfd_read(self._event)
         return bool(ready)
 
     def wake(self) -> None:
         """End the present wait, or the next one, at once."""
-        try:
-            os.write(self._write_end, b"w")
-        except BlockingIOError:
-            return  # thousands of unread wakes are as good as one more
+        os.eventfd_write(self._event, 1)
 
     def close(self) -> None:
-        """Close the pipe."""
-        os.close(self._read_end)
-        os.close(self._write_end)
+        """Close the event counter."""
+        os.close(self._event)
