@@ -14,7 +14,7 @@ from safety_island.messages.outputs import Control
 from safety_island.messages.wire import Time
 from tests.can.rig import LogLines
 
-ROUNDS = 200
+ROUNDS = 100
 SENDS = 5
 LIMIT_YARDSTICKS = 0.1
 
@@ -31,13 +31,15 @@ def test_encode_and_send_on_the_mock_cost_a_tenth_of_a_yardstick() -> None:
     output = start_output(
         OutputMode.DDS_AND_CAN, parse_spec("mock"), 0.15, time.monotonic_ns, LogLines()
     )
-    sends, yards = [], []
-    for _ in range(ROUNDS):
+    sends: list[float] = []
+    yards: list[float] = []
+    # The quickest of each: what another process takes away says nothing about either. On a busy
+    # machine it takes more rounds until both had a moment of their own.
+    while len(sends) < ROUNDS or min(sends) / min(yards) > LIMIT_YARDSTICKS:
+        assert len(sends) < 20 * ROUNDS, f"{min(sends) / min(yards):.3f} yardsticks"
         begun_ns = time.perf_counter_ns()
         for _ in range(SENDS):
             output.send(command, stamp.nanoseconds)
         sends.append((time.perf_counter_ns() - begun_ns) / 1e3 / SENDS)
         yards.append(measure_us(yardstick))
-    assert output.counters.sent == ROUNDS * SENDS
-    # The quickest of each: what another process takes away says nothing about either.
-    assert min(sends) / min(yards) <= LIMIT_YARDSTICKS
+    assert output.counters.sent == SENDS * len(sends)
