@@ -8,13 +8,14 @@ import re
 import signal
 import subprocess
 import sys
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from safety_island.cli.main import main
-from safety_island.cli.run_report import RunReport, percentile, tick_values
+from safety_island.cli.run_report import RunReport, percentile, sample_ages, tick_values
 from safety_island.control.records import TRACE
 from safety_island.messages.outputs import Control
 from safety_island.messages.wire import Time
@@ -45,12 +46,13 @@ def tick(outcome: Outcome = Outcome.PUBLISHED, **values: Any) -> TickReport:
     return report._replace(**values)
 
 
-class Traced:
-    trace = np.zeros(1, TRACE)
+AGES = {"odometry": 0.1, "operation mode": math.inf}
 
 
 def reporter() -> RunReport:
-    return RunReport(Traced(), load("sim").logger, lambda: 1.25, None)
+    platform = load("sim")
+    node: Any = SimpleNamespace(clock=platform.clock, logger=platform.logger, inputs=())
+    return RunReport(node, np.zeros(1, TRACE), lambda: 1.25, None)
 
 
 def test_report_counts() -> None:
@@ -69,14 +71,20 @@ def test_report_counts() -> None:
 
 
 def test_values_of_a_tick() -> None:
-    values = tick_values(tick(), Traced.trace)
+    trace = np.zeros(1, TRACE)
+    values = tick_values(tick(), trace, AGES)
     assert values["outcome"] == "PUBLISHED"
     assert values["steering_tire_angle"] == 0.1
     assert values["state"] == "DRIVE"
-    assert values["ages_s"]["operation mode"] == math.inf
-    waiting = tick_values(tick(Outcome.WAITING_FOR_INPUT), Traced.trace)
+    assert values["ages_s"] == AGES
+    waiting = tick_values(tick(Outcome.WAITING_FOR_INPUT), trace, AGES)
     assert waiting["detail"] == "odometry"
     assert "state" not in waiting
+
+
+def test_ages_count_from_the_sending() -> None:
+    inputs: Any = [SimpleNamespace(name="a", sent_ns=10**9), SimpleNamespace(name="b", sent_ns=0)]
+    assert sample_ages(inputs, 3 * 10**9) == {"a": 2.0, "b": math.inf}
 
 
 def test_percentile_is_the_nearest_rank() -> None:

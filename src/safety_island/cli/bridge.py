@@ -8,6 +8,7 @@ from safety_island.cli import options
 from safety_island.cli.jsonlines import JsonLines
 from safety_island.cli.parser import teach
 from safety_island.cli.stopping import StopAtOnce, StopFlag
+from safety_island.cli.tell import tell
 
 SWITCH = {"true": True, "false": False}
 
@@ -98,4 +99,4 @@ def execute(arguments: argparse.Namespace) -> int:
         report = JsonLines().write if arguments.json else None
         with load("posix").on_stop(stop.set):
             start.disarm()
-            return run(arguments.config, chosen, stop, report)
+            return run(arguments.config, chosen, stop, report, tell)

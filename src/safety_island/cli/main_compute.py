@@ -8,6 +8,7 @@ from safety_island.cli import options
 from safety_island.cli.jsonlines import JsonLines
 from safety_island.cli.parser import teach
 from safety_island.cli.stopping import StopAtOnce, StopFlag
+from safety_island.cli.tell import tell
 from safety_island.sim.courses import COURSES, DEFAULT_COURSE
 
 
@@ -33,6 +34,13 @@ engaged when commands come. When they stop coming the vehicle brakes, as Autowar
         help=f"{courses} (default: {DEFAULT_COURSE})",
     )
     parser.add_argument("--repeat", action="store_true", help="drive lap after lap")
+    parser.add_argument(
+        "--within",
+        type=options.duration_s,
+        default=0.0,
+        metavar="SECONDS",
+        help="drive about this long: as many laps as fit, or a part of the course",
+    )
     parser.add_argument("--no-engage", action="store_true", help="leave the operation mode at STOP")
     options.add_interface(parser)
     options.add_duration(parser, 0.0)
@@ -52,10 +60,11 @@ def execute(arguments: argparse.Namespace) -> int:
             repeat=arguments.repeat,
             engage=not arguments.no_engage,
             duration_s=arguments.duration,
+            within_s=arguments.within,
             dds=DdsConfig(interface=arguments.interface),
         )
         platform, stop = load("posix"), StopFlag()
         report = JsonLines().write if arguments.json else None
         with platform.on_stop(stop.set):
             start.disarm()
-            return run(chosen, stop, platform.clock, report)
+            return run(chosen, stop, platform.clock, report, tell)

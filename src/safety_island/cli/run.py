@@ -71,8 +71,8 @@ def _run(arguments: argparse.Namespace, start: StopAtOnce) -> None:
     prepare_kernels()
     follower = TrajectoryFollower(parameters)
     lines = JsonLines() if arguments.json else None
-    report = RunReport(follower, platform.logger, seconds_since_start, lines)
     with ControllerNode(platform, transport, follower, parameters.node) as node:
+        report = RunReport(node, follower.trace, seconds_since_start, lines)
         node.observers.append(report)
         with platform.on_stop(node.stop):
             start.disarm()

@@ -2,46 +2,47 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Sequence
 from typing import Any, Protocol
 
 from safety_island.cli.jsonlines import JsonLines
 from safety_island.control.records import Records
 from safety_island.control.status import LongitudinalState, MpcStatus
 from safety_island.node import Outcome, TickReport
-from safety_island.node.inputs import INPUTS
-from safety_island.platform import Logger
+from safety_island.node.inputs import Input
+from safety_island.platform import Clock, Logger
 
-INPUT_NAMES = tuple(spec.name for spec in INPUTS)
 TICK_TIMES = 100_000
 """How many of the newest tick times the summary looks at."""
 
 
-class Traced(Protocol):
-    """What a report reads of the trajectory follower."""
+class Observed(Protocol):
+    """What a report reads of the controller node."""
 
-    @property
-    def trace(self) -> Records:
-        """TRACE record, shape (1,)."""
+    clock: Clock
+    logger: Logger
+    inputs: tuple[Input, ...]
 
 
 class RunReport:
     """An observer of the controller node.
 
-    ``lines`` None: only the first command and the summary, through the logger.
+    ``trace`` is the trajectory follower's TRACE record; ``since_start`` tells the time [s] since
+    the start of the process; ``lines`` None: only the first command and the summary, as log lines.
     """
 
     def __init__(
         self,
-        follower: Traced,
-        logger: Logger,
+        node: Observed,
+        trace: Records,
         since_start: Callable[[], float],
         lines: JsonLines | None,
     ) -> None:
         self.published = self.skipped = self.ticks = self.refused = 0
         self.first_control_s: float | None = None
-        self._follower = follower
-        self._logger = logger
+        self._node = node
+        self._trace = trace
         self._since_start = since_start
         self._lines = lines
         self._max_lateness_s = 0.0
@@ -56,7 +57,8 @@ class RunReport:
         if report.published:
             self._take_published(report)
         if self._lines is not None:
-            self._lines.write("tick", tick_values(report, self._follower.trace))
+            ages = sample_ages(self._node.inputs, self._node.clock.wall_ns())
+            self._lines.write("tick", tick_values(report, self._trace, ages))
 
     def _take_published(self, report: TickReport) -> None:
         self.published += 1
@@ -66,7 +68,7 @@ class RunReport:
             self._times[self.published % TICK_TIMES] = report.tick_time_s
         if self.first_control_s is None:
             self.first_control_s = self._since_start()
-            self._logger.info(
+            self._node.logger.info(
                 "first Control sent %.2f s after the start of the process", self.first_control_s
             )
             if self._lines is not None:
@@ -96,7 +98,7 @@ class RunReport:
             self._lines.write("summary", figures)
         median_s = figures["tick_s"]["median"]
         median = "" if median_s is None else f", tick {median_s * 1e3:.2f} ms at the median"
-        self._logger.info(
+        self._node.logger.info(
             "%d ticks, %d commands, %d ticks missed%s",
             self.ticks,
             self.published,
@@ -113,7 +115,14 @@ def percentile(ordered: list[float], percent: float) -> float | None:
     return ordered[max(int(rank), 1) - 1]
 
 
-def tick_values(report: TickReport, trace: Records) -> dict[str, Any]:
+def sample_ages(inputs: Sequence[Input], wall_ns: int) -> dict[str, float]:
+    """Time [s] since the newest sample of each input was sent, by wall clock; inf: none came."""
+    return {
+        item.name: (wall_ns - item.sent_ns) / 1e9 if item.sent_ns else math.inf for item in inputs
+    }
+
+
+def tick_values(report: TickReport, trace: Records, ages: dict[str, float]) -> dict[str, Any]:
     """Return one tick as named values; lengths in m, angles in rad, times in s."""
     values: dict[str, Any] = {
         "number": report.number,
@@ -122,7 +131,7 @@ def tick_values(report: TickReport, trace: Records) -> dict[str, Any]:
         "lateness_s": report.lateness_s,
         "skipped": report.skipped,
         "tick_s": report.tick_time_s,
-        "ages_s": dict(zip(INPUT_NAMES, report.ages_s, strict=True)),
+        "ages_s": ages,
         "refused": report.refused,
     }
     command = report.command

@@ -32,6 +32,7 @@ from safety_island.messages.wire import Time
 from safety_island.platform.interfaces import Clock
 from safety_island.platform.posix.clock import PosixClock
 from safety_island.sim.courses import DEFAULT_COURSE, load_course
+from safety_island.sim.fit import fit
 from safety_island.sim.world import World
 
 NODE_NAME = "main_compute"
@@ -64,6 +65,8 @@ class MainComputeOptions:
     """Engage autonomous mode when commands come."""
     duration_s: float = 0.0
     """End after this time [s], wherever the vehicle is; 0: when the course is driven."""
+    within_s: float = 0.0
+    """Choose laps, or cut the course, so that driving takes about this time [s]; 0: do not."""
     dds: DdsConfig = field(default_factory=lambda: DdsConfig(loopback_only=True))
 
 
@@ -153,10 +156,19 @@ def run(
     Raises ConfigurationError for an unknown course and for what DDS cannot use.
     """
     clock = clock or PosixClock()
-    course = load_course(options.course)
+    course, laps = load_course(options.course), 1
+    if options.within_s:
+        course, laps = fit(course, options.within_s)
     participant = Participant(options.domain, options.dds, NODE_NAME)
     start = clock.monotonic_ns() * 1e-9
-    world = World(course, start, repeat=options.repeat, engage=options.engage, say=say or _print)
+    world = World(
+        course,
+        start,
+        repeat=options.repeat,
+        laps=laps,
+        engage=options.engage,
+        say=say or _print,
+    )
     end = start + options.duration_s if options.duration_s else float("inf")
     with MainCompute(world, participant, clock) as main_compute:
         _loop(main_compute, stop, end, report)

@@ -28,6 +28,7 @@ Pose = tuple[float, float, float, float, float, float, float]
 class World:
     """Plant, gate, planner and metrics in step with a clock; times in s, monotonic.
 
+    Drives ``laps`` laps, or with ``repeat`` laps without end.
     Starts in STOP mode and engages AUTONOMOUS, when ``engage`` is on, as soon as commands come.
     """
 
@@ -37,17 +38,19 @@ class World:
         start: float,
         *,
         repeat: bool = False,
+        laps: int = 1,
         engage: bool = True,
         say: Callable[[str], None] = lambda _: None,
     ) -> None:
         self.course, self.gate = course, CommandGate()
-        self.planner = Planner(course, repeat=repeat)
+        self.planner = Planner(course, repeat=repeat or laps > 1)
         x, y, yaw = self.planner.start_pose()
         self.plant = Plant(x=x, y=y, yaw=yaw)
         self.metrics = Metrics(stop_errors=self.planner.stop_errors)
         self.mode = Mode.STOP
         self.stood_still_s = 0.0
         self._engage, self._say = engage, say
+        self._last_lap = None if repeat else laps - 1
         self._time = start
         self._finished_at: float | None = None
 
@@ -81,6 +84,8 @@ class World:
         place = self.planner.update(now, self.plant.x, self.plant.y, self.plant.speed)
         if self.mode is Mode.AUTONOMOUS:
             self.metrics.update(now, place, self.plant.speed)
+        if self.planner.lap == self._last_lap:
+            self.planner.repeat = False
         if len(self.planner.stop_errors) > made:
             error = self.planner.stop_errors[-1]
             side = "beyond" if error >= 0.0 else "before"

@@ -11,7 +11,7 @@ import pytest
 from safety_island.cli.demo import session
 from safety_island.cli.demo.child import Child, how_it_ended
 from safety_island.cli.demo.events import BRIDGE, ISLAND, VEHICLE, DemoState
-from safety_island.cli.demo.session import DemoError, Session
+from safety_island.cli.demo.session import DemoError, Session, bare
 from tests.cli.demo.samples import STATUS, TICK, VEHICLE_SUMMARY
 
 SERVE = """
@@ -76,6 +76,19 @@ def test_vehicle_that_does_not_move_is_told(monkeypatch: pytest.MonkeyPatch) -> 
         DemoError, match=r"did not move within 0\.2 s: waiting for the main compute"
     ):
         run(server(ISLAND, TICK), child(VEHICLE, "import time; time.sleep(60)"))
+
+
+def test_drive_that_takes_too_long_is_ended() -> None:
+    vehicle = server(VEHICLE, STATUS, VEHICLE_SUMMARY)
+    running = Session((server(ISLAND, TICK), vehicle), lambda state: None, limit_s=0.3)
+    running.run()
+    assert running.state.vehicle_summary == VEHICLE_SUMMARY
+
+
+def test_heads_of_log_lines_are_left_out() -> None:
+    assert bare("[INFO] [1795317816.618334] [node/node.py:70] is live") == "is live"
+    kept = "[ERROR] [1795317816.618334] [node/node.py:70] no bus"
+    assert bare(kept) == kept
 
 
 def test_child_that_will_not_end_is_killed() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 import signal
 import sys
 from contextlib import suppress
@@ -21,6 +22,9 @@ from safety_island.cli.parameters import read_parameters
 from safety_island.cli.parser import teach
 from safety_island.errors import IslandError
 from safety_island.sim.courses import COURSES, DEFAULT_COURSE, load_course
+
+GRACE_S = 10.0
+"""A drive that takes this much longer [s] than planned is ended."""
 
 DOMAINS = (1, 2)
 """Main compute and safety island, when nobody else uses them on this machine."""
@@ -79,7 +83,9 @@ def execute(arguments: argparse.Namespace) -> int:
 def _run(arguments: argparse.Namespace, domains: tuple[int, int]) -> int:
     interrupted = False
     with TemporaryDirectory() as folder, _display(arguments, domains) as show:
-        session = Session(make_children(arguments, domains, Path(folder)), show)
+        children = make_children(arguments, domains, Path(folder))
+        limit_s = arguments.duration + GRACE_S if arguments.duration else math.inf
+        session = Session(children, show, limit_s)
         try:
             session.run()
         except KeyboardInterrupt:

@@ -26,7 +26,7 @@ def make_children(
     if arguments.period is not None:
         run += ["--period", repr(arguments.period)]
     drive = ["main-compute", "--domain", main, "--course", arguments.course, *LOOPBACK, "--json"]
-    drive += ["--duration", repr(arguments.duration)] if arguments.duration else ["--repeat"]
+    drive += ["--within", repr(arguments.duration)] if arguments.duration else ["--repeat"]
     return [
         Child(ISLAND, run),
         Child(BRIDGE, ["bridge", str(config), *LOOPBACK, "--json"]),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import re
 import selectors
 import time
 from collections.abc import Callable, Sequence
@@ -12,6 +14,7 @@ from safety_island.cli.demo.text import waiting_for
 from safety_island.errors import IslandError
 
 REFRESH_S = 0.1
+_LOG_HEAD = re.compile(r"\[INFO\] \[[\d.]+\] \[[^]]*\] ")
 START_LIMIT_S = 60.0
 """The vehicle must drive by then; compiled code is there before the processes start."""
 
@@ -23,14 +26,21 @@ class DemoError(IslandError):
 class Session:
     """Some children, one state, one loop; ``show`` is called about ten times a second.
 
-    The demo ends in order when the main compute ends with exit code 0.
+    The demo ends in order when the main compute ends with exit code 0. After ``limit_s`` [s] of
+    driving it is told to.
     """
 
-    def __init__(self, children: Sequence[Child], show: Callable[[DemoState], None]) -> None:
+    def __init__(
+        self,
+        children: Sequence[Child],
+        show: Callable[[DemoState], None],
+        limit_s: float = math.inf,
+    ) -> None:
         self.state = DemoState()
         self._children = children
         self._show = show
-        self._has_driven = False
+        self._limit_s = limit_s
+        self._driven_since: float | None = None
 
     def run(self) -> None:
         """Run to the end; raise DemoError when a child dies or nothing happens.
@@ -59,8 +69,9 @@ class Session:
             known = len(child.said)
             for event in child.events():
                 self.state.update(child.name, event)
-            self.state.messages += [f"{child.name}: {line}" for line in child.said[known:]]
-        self._has_driven = self._has_driven or self.state.is_driving
+            self.state.messages += [f"{child.name}: {bare(line)}" for line in child.said[known:]]
+        if self._driven_since is None and self.state.is_driving:
+            self._driven_since = time.monotonic()
 
     def _has_ended(self) -> bool:
         """Whether the main compute has come to its end; raise DemoError when another one has."""
@@ -78,11 +89,18 @@ class Session:
         if now - self._shown >= REFRESH_S:
             self._shown = now
             self._show(self.state)
-        if not self._has_driven and now - self._started > START_LIMIT_S:
+        if self._driven_since is not None:
+            if now - self._driven_since > self._limit_s:
+                self._limit_s = math.inf
+                self._named(VEHICLE).tell_to_stop()
+        elif now - self._started > START_LIMIT_S:
             raise DemoError(
                 f"the vehicle did not move within {START_LIMIT_S:g} s:"
                 f" waiting for {waiting_for(self.state)}"
             )
+
+    def _named(self, name: str) -> Child:
+        return next(child for child in self._children if child.name == name)
 
     def _end(self, running: Sequence[Child]) -> None:
         for child in running:
@@ -92,3 +110,8 @@ class Session:
         self._read(running)
         for child in running:
             child.close()
+
+
+def bare(line: str) -> str:
+    """Return a line without the head of an ordinary log line."""
+    return _LOG_HEAD.sub("", line, count=1)

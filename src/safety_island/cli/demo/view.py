@@ -16,7 +16,7 @@ from safety_island.sim.metrics import MAX_LATERAL_ERROR
 
 COLUMNS, ROWS = 56, 9
 """Size of the map in characters, at most."""
-BAR = 40
+BAR = 34
 SCALE = 0.5
 """Lateral error [m] at either end of its scale."""
 LOG_LINES = 3
@@ -33,8 +33,11 @@ class View:
         """Return the whole view."""
         parts: list[RenderableType] = [self._course(state), Text(), _figures(state)]
         if state.messages:
-            parts += [Text(), Text("\n".join(state.messages[-LOG_LINES:]), style="dim")]
-        return Panel(Group(*parts), title=self._title, width=78)
+            parts += [
+                Text(),
+                Text("\n".join(state.messages[-LOG_LINES:]), style="dim", no_wrap=True),
+            ]
+        return Panel(Group(*parts), title=self._title, width=80)
 
     def _course(self, state: DemoState) -> Text:
         """The map with the vehicle on it."""
@@ -64,7 +67,7 @@ def _figures(state: DemoState) -> Table:
         speed, target = float(vehicle["speed"]), float(vehicle["target_speed"])
         table.add_row("speed", _bar(speed, max(target, speed)), f"{speed:.2f} of {target:.2f} m/s")
         error = float(vehicle["lateral_error"])
-        table.add_row("lateral error", _offset(error), f"{error:+.3f} m")
+        table.add_row("lateral", _offset(error), f"{error:+.3f} m")
     table.add_row("controller", _bold(controller(state)), _command(state))
     late = milliseconds(state.tick.get("lateness_s"))
     table.add_row("tick", milliseconds(state.tick.get("tick_s")), f"woken {late} late")
