@@ -29,6 +29,8 @@ COMMANDS = (
     Command("bench", "bench", "Measure the tick, or the way from odometry to command."),
     Command("params", "params", "Show or check controller parameters."),
     Command("can", "can", "Watch, send and describe the CAN command frames."),
+    Command("config", "config", "Show the configuration of a target."),
+    Command("menuconfig", "menuconfig", "Choose the configuration of a target in a menu."),
     Command(
         "prepare", "prepare", "Compile the control kernels now, so that later starts are quick."
     ),

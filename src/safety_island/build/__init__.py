@@ -1,0 +1,1 @@
+"""Targets, their configuration by Kconfig, and the build."""

@@ -1,0 +1,55 @@
+"""Where the configuration of a target is kept."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from safety_island.build.targets import Target
+
+_PACKAGE = Path(__file__).parents[1]
+_PROJECT = _PACKAGE.parents[1]
+
+
+def _config_folder() -> Path:
+    """``config/`` of the source tree, or the copy inside an installed package."""
+    own = _PROJECT / "config"
+    return own if (own / "Kconfig").is_file() else _PACKAGE / "config"
+
+
+def _build_folder() -> Path:
+    """``build/`` of the source tree, or of the current folder when there is no source tree."""
+    inside = (_PROJECT / "config" / "Kconfig").is_file()
+    return (_PROJECT if inside else Path.cwd()) / "build"
+
+
+@dataclass(frozen=True)
+class Places:
+    """``config`` holds Kconfig and the shipped fragments, ``build`` a folder for each target."""
+
+    config: Path = field(default_factory=_config_folder)
+    build: Path = field(default_factory=_build_folder)
+
+    @property
+    def kconfig(self) -> Path:
+        """The Kconfig file."""
+        return self.config / "Kconfig"
+
+    def dotconfig(self, target: Target) -> Path:
+        """Where the resolved configuration is written."""
+        return self.build / target.name / ".config"
+
+    def saved(self, target: Target) -> Path:
+        """The fragment that ``island menuconfig`` writes."""
+        return self.build / target.name / "menuconfig.conf"
+
+    def fragments_of(self, target: Target) -> Iterator[Path]:
+        """Yield what stands before the user's fragments, in its order."""
+        yield self.config / "prj_actuation.conf"
+        for name in dict.fromkeys((target.board, target.name)):
+            board = self.config / "boards" / f"{name}_actuation.conf"
+            if board.exists():
+                yield board
+        if self.saved(target).exists():
+            yield self.saved(target)

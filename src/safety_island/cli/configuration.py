@@ -1,0 +1,59 @@
+"""Options that choose a target and change its configuration, and what they resolve to."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from safety_island.build.configuration import RunConfiguration
+from safety_island.build.kconfig import Resolved, resolve
+from safety_island.build.targets import NAMES
+
+
+def add_target(parser: argparse.ArgumentParser, default: str | None = None) -> None:
+    """Add ``-t``; without a default it must be given."""
+    shown = f" (default: {default})" if default else ""
+    parser.add_argument(
+        "-t",
+        "--target",
+        required=default is None,
+        default=default,
+        metavar="TARGET",
+        help=f"{', '.join(NAMES)}{shown}",
+    )
+
+
+def add_configuration(parser: argparse.ArgumentParser) -> None:
+    """Add ``--conf`` and ``-D``."""
+    parser.add_argument(
+        "--conf",
+        action="append",
+        type=Path,
+        default=[],
+        metavar="FILE",
+        help="a fragment of CONFIG_NAME=value lines over the target's own; may be repeated",
+    )
+    parser.add_argument(
+        "-D",
+        dest="define",
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        help="set one symbol over all files, for example -D LOG_LEVEL=2; may be repeated",
+    )
+
+
+def resolved(arguments: argparse.Namespace) -> Resolved:
+    """Return the configuration that the options choose; print which value replaced which."""
+    found = resolve(arguments.target, arguments.conf, arguments.define)
+    for note in found.notes:
+        print(f"note: {note}", file=sys.stderr)
+    run_configuration(found)
+    return found
+
+
+def run_configuration(found: Resolved) -> RunConfiguration:
+    """Return a resolved configuration as the program uses it, its texts checked."""
+    origins = found.origins()
+    return RunConfiguration.from_symbols(found.target.name, found.values(), origins.__getitem__)
