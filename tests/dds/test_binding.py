@@ -13,9 +13,11 @@ from cyclonedds.core import Entity
 from safety_island.dds import binding
 from safety_island.dds.endpoints import Publisher, Subscription
 from safety_island.dds.errors import DdsError
+from safety_island.dds.qos import DEFAULT
 from safety_island.messages import inputs
 from safety_island.messages.wire import Time
 from tests.dds.conftest import NewParticipant
+from tests.dds.waiting import wait_for
 
 TOPIC = "/binding"
 DATA = inputs.encode_steering(inputs.Steering(Time(1, 2), 0.5))
@@ -98,6 +100,20 @@ def test_a_writer_is_found_by_its_handle(pair: tuple[Publisher, Subscription]) -
     found = binding.matched_writer(subscription._ref, sample.publication_handle)
     assert found == publisher.guid
     assert binding.matched_writer(subscription._ref, 12345) is None
+
+
+def test_a_peer_s_policies_that_cannot_be_read_do_not_stop_discovery(
+    participant: NewParticipant, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fails(_: int) -> None:
+        raise KeyError
+
+    monkeypatch.setattr(binding, "_convert_qos", fails)
+    own, other = participant(), participant()
+    publisher = other.publisher(TOPIC, inputs.STEERING)
+    (seen,) = wait_for(lambda: own.publications(TOPIC))
+    assert (seen.guid, seen.type_name, seen.type_hash) == (publisher.guid, inputs.STEERING, "")
+    assert seen.qos == DEFAULT
 
 
 def test_delete_is_at_once_and_only_once(participant: NewParticipant) -> None:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import pytest
+from cyclonedds.core import DDSException
 from cyclonedds.domain import DomainParticipant
 from cyclonedds.idl import IdlStruct
 from cyclonedds.idl.types import float32, int32, uint32
@@ -17,6 +18,7 @@ from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
 
 from safety_island.dds import presence, topics
+from safety_island.dds.config import DdsConfig
 from safety_island.dds.endpoints import Subscription
 from safety_island.dds.errors import DdsError
 from safety_island.dds.opaque import OpaqueTopic
@@ -253,10 +255,10 @@ def test_an_unknown_type_passes_as_bytes(participant: NewParticipant) -> None:
     publisher = own.publisher("/a/b", "some_msgs/msg/Thing")
     subscription = other.subscription("/a/b", "some_msgs/msg/Thing", DEFAULT.with_depth(128))
     wait_for(publisher.matched)
-    sent = [b"\0\1\0\0" + bytes(range(4 * n)) for n in range(1, 60)]
+    sent = [b"\0\1\0\0" + bytes(range(4 * n)) for n in range(1, 61)] * 2
     assert all(publisher.write(data) for data in sent)
-    assert not publisher.write(b"\0\1")
-    received: list[bytes] = []
+    assert not publisher.write(b"\0\1") and not publisher.write(b"\0\x33\0\0abcd")
+    received: list[bytes] = [sample.data for sample in subscription.take_all()]
 
     def all_there() -> bool:
         received.extend(sample.data for sample in subscription.take_all())
@@ -304,6 +306,39 @@ def test_an_illegal_node_name_is_refused(name: str, namespace: str, domain_id: i
 def test_a_type_name_without_package_is_refused(participant: NewParticipant) -> None:
     with pytest.raises(Exception, match="not of the form package/msg/Name"):
         participant().publisher("/a", "Odometry")
+
+
+def test_two_types_on_one_topic_do_not_mix(participant: NewParticipant) -> None:
+    own, other = participant(), participant()
+    publisher = own.publisher("/a", STEERING.type_name)
+    own.publisher("/a", topics.ODOMETRY.type_name)
+    right = other.subscription("/a", STEERING.type_name)
+    wrong = other.subscription("/a", topics.ODOMETRY.type_name)
+    wait_for(publisher.matched)
+    publisher.write(REPORT)
+    assert wait_for(right.take_newest).data == REPORT
+    assert wrong.take_newest() is None
+    assert (right.matched(), wrong.matched()) == (1, 1)
+
+
+def test_a_closed_participant_is_told(participant: NewParticipant) -> None:
+    own = participant()
+    own.close()
+    with pytest.raises(DdsError, match=f"topic rt/a of {STEERING.type_name}"):
+        own.publisher("/a", STEERING.type_name)
+
+
+def test_a_participant_that_the_library_refuses_leaves_no_domain_behind(
+    domain_id: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fails(*_: object) -> None:
+        raise DDSException(DDSException.DDS_RETCODE_OUT_OF_RESOURCES)
+
+    with monkeypatch.context() as patch:
+        patch.setattr("safety_island.dds.participant.DomainParticipant", fails)
+        with pytest.raises(DdsError, match=f"no participant in domain {domain_id}: .*RESOURCES"):
+            Participant(domain_id, LOOPBACK)
+    Participant(domain_id, DdsConfig(loopback_only=True, max_message_size=9000)).close()
 
 
 def test_the_library_s_refusal_of_a_policy_is_one_line(participant: NewParticipant) -> None:

@@ -53,11 +53,6 @@ class Endpoints:
         self._refresh()
         return [endpoint for endpoint in self._known.values() if endpoint.topic == topic]
 
-    def all(self) -> list[RemoteEndpoint]:
-        """Return every live endpoint of other participants."""
-        self._refresh()
-        return list(self._known.values())
-
     def close(self) -> None:
         """Stop listening to discovery."""
         binding.delete(self._reader)
