@@ -51,7 +51,7 @@ class Bridge:
                 domain: stack.enter_context(Participant(domain, dds, f"{name}_{domain}"))
                 for domain in domains
             }
-            self._group = stack.enter_context(WaitGroup())
+            self._group = stack.enter_context(WaitGroup[Link]())
             self.links = [
                 Link(
                     route,
@@ -74,9 +74,7 @@ class Bridge:
 
     def forward(self, timeout_s: float) -> int:
         """Wait at most ``timeout_s`` [s] for samples and forward all; return how many went out."""
-        if not self._group.wait(timeout_s):
-            return 0
-        return sum(link.forward() for link in self.links)
+        return sum(link.forward() for link in self._group.wait(timeout_s))
 
     def run(self, stop: StopEvent, report: Report | None = None, duration_s: float = 0.0) -> None:
         """Forward until ``stop`` is set, or for ``duration_s`` [s] when that is not 0."""

@@ -60,7 +60,7 @@ class Link:
     route: Route
     source: Participant
     target: Participant
-    group: WaitGroup
+    group: WaitGroup[Link]
     wait_for: WaitFor
     say: Say
     mirror: Link | None = None
@@ -174,7 +174,7 @@ class Link:
         subscription = self.source.subscription(
             self.route.source[1], self._read_type, qos, ignore_own=not self.feeders
         )
-        self.group.add(subscription)
+        self.group.add(subscription, self)
         self._ends = _Ends(subscription, publisher, qos)
         self._written_as.add(publisher.guid)
         self._told.clear()
