@@ -7,23 +7,17 @@ one), what ``island menuconfig`` saved, the user's fragments, ``-D``.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from safety_island.build import kconfig_symbols as symbols
-from safety_island.build.kconfig_fragment import (
-    PREFIX,
-    Assignment,
-    read_fragment,
-    read_override,
-    shown,
-)
+from safety_island.build.kconfig_fragment import PREFIX, Assignment, shown
+from safety_island.build.kconfig_merge import merge, read
 from safety_island.build.kconfig_places import Places
 from safety_island.build.kconfig_symbols import Value
 from safety_island.build.targets import Target, find_target
-from safety_island.errors import ConfigurationError
 
 
 @dataclass(frozen=True)
@@ -86,10 +80,10 @@ def resolve(
     """
     row = find_target(target)
     where = places if places is not None else Places()
-    assignments = read(where.fragments_of(row), fragments, overrides)
+    sources = read(where.fragments_of(row), fragments, overrides)
     kconfig = symbols.load_kconfig(where.kconfig)
     defaults = {item.name: symbols.value_of(item) for item in kconfig.unique_defined_syms}
-    in_force, notes = merge(kconfig, [symbols.with_quotes(kconfig, a) for a in assignments])
+    in_force, notes = merge(kconfig, sources)
     settings = tuple(
         Setting(
             item.name,
@@ -103,55 +97,6 @@ def resolve(
         for item in kconfig.unique_defined_syms
     )
     return Resolved(row, settings, tuple(notes))
-
-
-def read(
-    shipped: Iterable[Path], fragments: Iterable[Path] = (), overrides: Iterable[str] = ()
-) -> list[Assignment]:
-    """Return every assignment in its order. Raises ConfigurationError with every mistake."""
-    found: list[Assignment] = []
-    mistakes: list[str] = []
-    sources: list[Path | str] = [*shipped, *fragments, *overrides]
-    for source in sources:
-        try:
-            found += read_fragment(source) if isinstance(source, Path) else [read_override(source)]
-        except ConfigurationError as error:
-            mistakes.append(str(error))
-    _raise(mistakes)
-    return found
-
-
-def merge(
-    kconfig: Any, assignments: Sequence[Assignment]
-) -> tuple[dict[str, Assignment], list[str]]:
-    """Give Kconfig all assignments; return those in force by symbol, and what replaced what.
-
-    A member of a choice that was set to y stands under the name of the choice. Raises
-    ConfigurationError for an unknown symbol and for a value that Kconfig refuses.
-    """
-    _raise(f"{a.place}: {text}" for a in assignments if (text := symbols.refusal(kconfig, a)))
-    in_force: dict[str, Assignment] = {}
-    notes: list[str] = []
-    for item in assignments:
-        symbol = kconfig.syms[item.symbol]
-        symbols.apply(item, symbol)
-        name = symbol.name
-        if symbol.choice is not None and item.value == "y":
-            in_force.pop(name, None)
-            name = symbol.choice.name
-        before = in_force.get(name)
-        if before is not None and str(before) != str(item):
-            notes.append(f"{item.place}: {item} replaces {before} of {before.place}")
-        in_force[name] = item
-    checked = ((a, symbols.not_taken(a, kconfig.syms[a.symbol])) for a in in_force.values())
-    _raise(f"{a.place}: {text}" for a, text in checked if text)
-    return in_force, notes
-
-
-def _raise(mistakes: Iterable[str]) -> None:
-    found = list(mistakes)
-    if found:
-        raise ConfigurationError("\n".join(found))
 
 
 def _origin(symbol: Any, in_force: dict[str, Assignment]) -> str:

@@ -13,7 +13,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from safety_island.build.kconfig import merge, read, resolve
+from safety_island.build.kconfig import resolve
+from safety_island.build.kconfig_merge import merge, read
 from safety_island.build.kconfig_places import Places
 from safety_island.build.kconfig_symbols import has_prompt, load_kconfig
 from safety_island.build.targets import Target, find_target

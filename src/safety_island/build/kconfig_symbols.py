@@ -5,7 +5,9 @@ Kconfiglib parses and evaluates; here its answers become sentences for a user.
 
 from __future__ import annotations
 
+import gc
 import re
+import warnings
 from collections.abc import Iterator
 from difflib import get_close_matches
 from pathlib import Path
@@ -27,10 +29,20 @@ def load_kconfig(path: Path) -> Any:
         kconfig = kconfiglib.Kconfig(str(path), warn_to_stderr=False)
     except (kconfiglib.KconfigError, OSError) as error:
         text = " ".join(str(error).split())
-        raise ConfigurationError(f"{shown(path)}: cannot be read as Kconfig: {text}") from error
+        kconfig = None
+    if kconfig is None:
+        _close_files()
+        raise ConfigurationError(f"{shown(path)}: cannot be read as Kconfig: {text}")
     if kconfig.warnings:
         raise ConfigurationError("\n".join(" ".join(text.split()) for text in kconfig.warnings))
     return kconfig
+
+
+def _close_files() -> None:
+    """Close what kconfiglib leaves open at a mistake; it sits in a cycle of references."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ResourceWarning)
+        gc.collect()
 
 
 def value_of(symbol: Any) -> Value:
