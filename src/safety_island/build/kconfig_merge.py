@@ -1,4 +1,4 @@
-"""Fragments one after the other into Kconfig, as Zephyr does: later wins, nothing is passed over."""
+"""Fragments one after the other into Kconfig, as Zephyr does: later wins, nothing is ignored."""
 
 from __future__ import annotations
 
