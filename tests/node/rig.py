@@ -36,6 +36,9 @@ from safety_island.platform.sim import make
 Point = tuple[float, float, float]
 """x [m], y [m], speed [m/s]."""
 
+ROWS: list[Point] = [(0.0, 0.0, 1.0), (1.0, 0.0, 1.0), (2.0, 0.0, 1.0)]
+"""A trajectory for tests that care little which."""
+
 
 def make_points(rows: Sequence[Point]) -> Records:
     """Points with level, forward orientation."""
