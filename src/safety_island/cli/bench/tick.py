@@ -1,4 +1,4 @@
-"""``island bench``: measurements on this machine, as ratios to a yardstick of the same run."""
+"""``island bench tick``."""
 
 from __future__ import annotations
 
@@ -7,34 +7,19 @@ import json
 import sys
 
 from safety_island.cli.options import add_json
-from safety_island.cli.parser import teach
 from safety_island.cli.progress import prepare_kernels, tick_progress
 
-PURPOSE = """
-Measure on this machine. 'tick' is the time of one tick of both controllers in process: decoded
-inputs to command, a new 220-point trajectory every tick, pinned to one core, after warm-up. Its
-yardstick is one cold solve of a fixed problem by OSQP, measured in between; Autoware's C++
-controllers take 1.9 yardsticks for the same tick.
-"""
-
+HELP = "one tick of both controllers"
 SOLVERS = ("unconstraint_fast", "daqp")
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    """Declare ``tick``."""
-    teach(
-        parser,
-        PURPOSE,
-        ("island bench tick", "both solvers of our own"),
-        ("island bench tick --solver daqp --json", "one of them, for a script"),
-    )
-    kinds = parser.add_subparsers(dest="kind", metavar="tick", required=True)
-    tick = kinds.add_parser("tick", help="one tick of both controllers")
-    tick.add_argument("--solver", choices=SOLVERS, help="measure this solver only")
-    tick.add_argument(
+    """Declare the arguments."""
+    parser.add_argument("--solver", choices=SOLVERS, help="measure this solver only")
+    parser.add_argument(
         "--rounds", type=_rounds, default=10, metavar="N", help="rounds of 300 ticks (default: 10)"
     )
-    add_json(tick, "median_us, p99_us, max_us, yardstick_us and ratio of one solver")
+    add_json(parser, "median_us, p99_us, max_us, yardstick_us and ratio of one solver")
 
 
 def _rounds(text: str) -> int:
@@ -45,13 +30,9 @@ def _rounds(text: str) -> int:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Measure."""
-    prepare_kernels()
-    return _tick(arguments)
-
-
-def _tick(arguments: argparse.Namespace) -> int:
     from safety_island.bench.tick import measure
 
+    prepare_kernels()
     chosen = [arguments.solver] if arguments.solver else list(SOLVERS)
     if arguments.json:
         print(json.dumps(measure(chosen[0], arguments.rounds).as_dict(), indent=2))
