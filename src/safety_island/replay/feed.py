@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from safety_island import params, platform
+from safety_island import params
 from safety_island.control.follower import TrajectoryFollower
 from safety_island.control.records import Records
 from safety_island.dds import topics
@@ -16,6 +16,7 @@ from safety_island.messages.wire import Time
 from safety_island.node import ControllerNode
 from safety_island.node.memory import MemoryDomain
 from safety_island.platform.interfaces import LogConfig, LogLevel
+from safety_island.platform.sim import make
 from safety_island.replay.recording import (
     ACCELERATION,
     CONTRACT_COLUMNS,
@@ -27,7 +28,7 @@ from safety_island.replay.recording import (
 )
 
 _STOP = 1
-_POSE = ("x", "y", "z", "qx", "qy", "qz", "qw", "vx", "vy")
+_POSE_AND_SPEED = ("x", "y", "z", "qx", "qy", "qz", "qw", "vx", "vy", "wz")
 
 
 class Replay:
@@ -38,7 +39,7 @@ class Replay:
         changes = run.overrides | ({"qp_solver_type": solver} if solver else {})
         parameters = params.from_mapping(changes, "firmware")
         self.run = run
-        self.platform = platform.load("sim", LogConfig(level=LogLevel.NONE))
+        self.platform = make(LogConfig(level=LogLevel.NONE))
         domain = MemoryDomain(self.platform.clock)
         self.follower = TrajectoryFollower(parameters)
         self.node = ControllerNode(self.platform, domain, self.follower, parameters.node)
@@ -64,8 +65,8 @@ class Replay:
         row = {name: float(column[tick]) for name, column in self.run.state.items()}
         mask = int(self.run.deliver_mask[tick])
         if mask & ODOMETRY:
-            pose = (row[name] for name in _POSE)
-            odometry = codec.Odometry(stamp, "map", "base_link", *pose, 0.0, 0.0, 0.0, row["wz"])
+            values = {name: row[name] for name in _POSE_AND_SPEED}
+            odometry = codec.Odometry(stamp, "map", "base_link", **values, vz=0.0, wx=0.0, wy=0.0)
             self._write["odometry"](codec.encode_odometry(odometry))
         if mask & STEERING:
             self._write["steering"](codec.encode_steering(codec.Steering(stamp, row["steer"])))

@@ -16,8 +16,6 @@ compute's domain to the command back there, less the wait for the tick, with isl
 processes of their own.
 """
 
-KINDS = {"tick": tick, "loop": loop}
-
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare ``tick`` and ``loop``."""
@@ -29,10 +27,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
         ("island bench loop --duration 30", "the way through bridge and island and back"),
     )
     kinds = parser.add_subparsers(dest="kind", metavar="tick|loop", required=True)
-    for name, module in KINDS.items():
-        module.configure(kinds.add_parser(name, help=module.HELP))
+    tick.configure(kinds.add_parser("tick", help=tick.HELP))
+    loop.configure(kinds.add_parser("loop", help=loop.HELP))
 
 
 def execute(arguments: argparse.Namespace) -> int:
     """Measure."""
-    return KINDS[arguments.kind].execute(arguments)
+    return tick.execute(arguments) if arguments.kind == "tick" else loop.execute(arguments)
