@@ -141,6 +141,6 @@ def _connect(links: Sequence[Link]) -> None:
                 continue
             if other.route.entry == link.route.entry:
                 link.mirror = other
-            else:
+            elif other.write_type == link.read_type:
                 link.feeders.append(other)
                 other.feeds.append(link)

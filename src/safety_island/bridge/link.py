@@ -75,8 +75,8 @@ class Link:
         self._told: set[str] = set()
         self._written_as: set[bytes] = set()  # every identity of this link's publisher
         self._transform = _TRANSFORMS.get(mode)
-        self._read_type = COMPRESSED if mode == "decompress" else self.route.type_name
-        self._write_type = COMPRESSED if mode == "compress" else self.route.type_name
+        self.read_type = COMPRESSED if mode == "decompress" else self.route.type_name
+        self.write_type = COMPRESSED if mode == "compress" else self.route.type_name
 
     @property
     def is_open(self) -> bool:
@@ -146,12 +146,12 @@ class Link:
     def _offers(self) -> tuple[list[Qos], tuple[str, ...]]:
         """QoS of the publishers that this route can hear; a warning for those of another type."""
         found = self.source.publications(self.route.source[1])
-        heard = [other.qos for other in found if other.type_name == self._read_type]
+        heard = [other.qos for other in found if other.type_name == self.read_type]
         heard += [link._ends.qos for link in self.feeders if link._ends is not None]
-        other_types = {other.type_name for other in found} - {self._read_type}
+        other_types = {other.type_name for other in found} - {self.read_type}
         return heard, tuple(
             f"published as {name} in domain {self.route.source[0]}, the bridge file has "
-            f"{self._read_type} ({self.route.where})"
+            f"{self.read_type} ({self.route.where})"
             for name in sorted(other_types)
         )
 
@@ -163,16 +163,16 @@ class Link:
     def _is_wanted(self) -> bool:
         """Whether a subscription waits in the target domain."""
         others = self.target.subscriptions(self.route.target[1])
-        return any(other.type_name == self._write_type for other in others) or any(
+        return any(other.type_name == self.write_type for other in others) or any(
             link.is_open for link in self.feeds
         )
 
     def _open(self, qos: Qos) -> None:
         changed = self._ends is not None
         self.close()
-        publisher = self.target.publisher(self.route.target[1], self._write_type, qos)
+        publisher = self.target.publisher(self.route.target[1], self.write_type, qos)
         subscription = self.source.subscription(
-            self.route.source[1], self._read_type, qos, ignore_own=not self.feeders
+            self.route.source[1], self.read_type, qos, ignore_own=not self.feeders
         )
         self.group.add(subscription, self)
         self._ends = _Ends(subscription, publisher, qos)

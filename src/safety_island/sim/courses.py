@@ -7,7 +7,7 @@ where it starts, so that a controller finds path behind the vehicle as well.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 
 import numpy as np
 
@@ -40,6 +40,12 @@ class Leg:
     start: int
     origin: float
     """Station [m] of the first point: negative in the lead-in, 0 where the course starts."""
+
+    @cached_property
+    def columns(self) -> tuple[list[float], list[float], list[float], list[float]]:
+        """x, y, z [m] and speed [m/s] as plain numbers: a record's field costs a microsecond."""
+        x, y, z, speed = (self.points[name].tolist() for name in ("x", "y", "z", "v"))
+        return x, y, z, speed
 
 
 @dataclass(frozen=True)

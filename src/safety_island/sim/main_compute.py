@@ -12,7 +12,6 @@ from typing import Any, Protocol
 from safety_island.control.status import Mode
 from safety_island.dds import topics
 from safety_island.dds.config import DdsConfig
-from safety_island.dds.endpoints import Publisher
 from safety_island.dds.participant import Participant
 from safety_island.dds.qos import DEFAULT
 from safety_island.messages.errors import DecodeError
@@ -29,6 +28,7 @@ from safety_island.messages.inputs import (
 from safety_island.messages.outputs import decode_control
 from safety_island.messages.trajectory import encode_trajectory
 from safety_island.messages.wire import Time
+from safety_island.node.transport import Publisher, Transport
 from safety_island.platform.interfaces import Clock
 from safety_island.platform.posix.clock import PosixClock
 from safety_island.sim.courses import DEFAULT_COURSE, load_course
@@ -71,12 +71,12 @@ class MainComputeOptions:
 
 
 class MainCompute:
-    """The topics of the stand-in around a world; a context manager."""
+    """The topics of the stand-in around a world, on DDS or in memory; a context manager."""
 
-    def __init__(self, world: World, participant: Participant, clock: Clock) -> None:
+    def __init__(self, world: World, transport: Transport, clock: Clock) -> None:
         self.world, self.clock = world, clock
         self.refused = 0  # commands that are no Control, or not finite
-        self._participant = participant
+        self._transport = transport
         self._odometry = self._publisher(topics.ODOMETRY)
         self._steering = self._publisher(topics.STEERING)
         self._acceleration = self._publisher(topics.ACCELERATION)
@@ -84,13 +84,11 @@ class MainCompute:
         self._mode = self._publisher(topics.OPERATION_MODE)
         control = topics.CONTROL
         # Volatile: the last command of an island that is gone must not move the vehicle.
-        self._control = participant.subscription(control.name, control.type_name, DEFAULT)
+        self._control = transport.subscription(control.name, control.type_name, DEFAULT)
         self._told_mode: Mode | None = None
 
-    def take_command(self, timeout_s: float) -> None:
-        """Wait at most ``timeout_s`` [s] for a command and hand the newest one to the world."""
-        if not self._participant.wait(timeout_s):
-            return
+    def take_command(self) -> None:
+        """Hand the newest command, when one came, to the world."""
         sample = self._control.take_newest()
         if sample is None:
             return
@@ -127,7 +125,7 @@ class MainCompute:
 
     def close(self) -> None:
         """Leave the domain."""
-        self._participant.close()
+        self._transport.close()
 
     def __enter__(self) -> MainCompute:
         return self
@@ -141,7 +139,7 @@ class MainCompute:
         self.close()
 
     def _publisher(self, topic: topics.TopicEntry) -> Publisher:
-        return self._participant.publisher(topic.name, topic.type_name, topic.qos)
+        return self._transport.publisher(topic.name, topic.type_name, topic.qos)
 
 
 def run(
@@ -171,19 +169,26 @@ def run(
     )
     end = start + options.duration_s if options.duration_s else float("inf")
     with MainCompute(world, participant, clock) as main_compute:
-        _loop(main_compute, stop, end, report)
+        _loop(main_compute, participant, stop, end, report)
     if report is not None:
         report("summary", {**world.summary(), "refused": main_compute.refused})
     return 0
 
 
-def _loop(main_compute: MainCompute, stop: StopEvent, end: float, report: Report | None) -> None:
+def _loop(
+    main_compute: MainCompute,
+    participant: Participant,
+    stop: StopEvent,
+    end: float,
+    report: Report | None,
+) -> None:
     """Publish on a fixed grid of the monotonic clock; take commands between."""
     clock, world = main_compute.clock, main_compute.world
     due = clock.monotonic_ns()
     round_number = 0
     while not stop.is_set():
-        main_compute.take_command(max(0, due - clock.monotonic_ns()) * 1e-9)
+        if participant.wait(max(0, due - clock.monotonic_ns()) * 1e-9):
+            main_compute.take_command()
         now_ns = clock.monotonic_ns()
         if now_ns < due:
             continue

@@ -5,13 +5,8 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import numpy as np
-
 from safety_island.sim.courses import Leg
 from safety_island.sim.shapes import SPACING
-
-_BACK, _AHEAD = 20, 60
-"""Points around the last index that are searched: a path that crosses itself stays one line."""
 
 
 class Place(NamedTuple):
@@ -31,31 +26,41 @@ class Place(NamedTuple):
     """Speed of the profile [m/s]."""
 
 
-def locate(leg: Leg, index: int, x: float, y: float) -> Place:
-    """Project (x, y) [m] on the leg, near the segment ``index`` where it was before."""
-    low = max(index - _BACK, 0)
-    points = leg.points[low : index + _AHEAD]
-    nearest = low + int(np.argmin((points["x"] - x) ** 2 + (points["y"] - y) ** 2))
-    last = len(leg.points) - 2
-    after = _on_segment(leg, min(nearest, last), x, y)
-    if nearest == 0 or nearest > last or after.station >= leg.origin + nearest * SPACING:
+def locate(leg: Leg, segment: int, x: float, y: float) -> Place:
+    """Project (x, y) [m] on the leg, walking from the segment where it was before.
+
+    The walk goes downhill in distance, so on a path that crosses itself it stays on its branch.
+    """
+    xs, ys = leg.columns[:2]
+    last = len(xs) - 1
+
+    def squared(i: int) -> float:
+        return (xs[i] - x) ** 2 + (ys[i] - y) ** 2
+
+    nearest, best = segment, squared(segment)
+    for step in (1, -1):
+        while 0 <= nearest + step <= last and (closer := squared(nearest + step)) < best:
+            nearest, best = nearest + step, closer
+    after = _on_segment(leg, min(nearest, last - 1), x, y)
+    if nearest in (0, last) or after.station >= leg.origin + nearest * SPACING:
         return after
     return _on_segment(leg, nearest - 1, x, y)
 
 
-def _on_segment(leg: Leg, index: int, x: float, y: float) -> Place:
-    a, b = leg.points[index], leg.points[index + 1]
-    dx, dy = float(b["x"] - a["x"]), float(b["y"] - a["y"])
+def _on_segment(leg: Leg, segment: int, x: float, y: float) -> Place:
+    xs, ys, zs, speeds = leg.columns
+    end = segment + 1
+    dx, dy = xs[end] - xs[segment], ys[end] - ys[segment]
     length = math.hypot(dx, dy)
-    rx, ry = x - float(a["x"]), y - float(a["y"])
+    rx, ry = x - xs[segment], y - ys[segment]
     ratio = (dx * rx + dy * ry) / (length * length)
     inside = min(max(ratio, 0.0), 1.0)
-    rise = float(b["z"] - a["z"])
+    rise = zs[end] - zs[segment]
     return Place(
-        segment=index,
-        station=leg.origin + (index + ratio) * SPACING,
+        segment=segment,
+        station=leg.origin + (segment + ratio) * SPACING,
         lateral_error=(dx * ry - dy * rx) / length,
-        height=float(a["z"]) + ratio * rise,
+        height=zs[segment] + ratio * rise,
         pitch=math.atan2(rise, length),
-        speed=(1.0 - inside) * float(a["v"]) + inside * float(b["v"]),
+        speed=(1.0 - inside) * speeds[segment] + inside * speeds[end],
     )
