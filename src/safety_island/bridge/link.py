@@ -161,11 +161,11 @@ class Link:
         return not self.wait_for.subscription or self._is_wanted()
 
     def _is_wanted(self) -> bool:
-        """Whether a subscription waits in the target domain."""
+        """Whether a subscription waits in the target domain, or beyond it over other routes."""
         others = self.target.subscriptions(self.route.target[1])
-        return any(other.type_name == self.write_type for other in others) or any(
-            link.is_open for link in self.feeds
-        )
+        if any(other.type_name == self.write_type for other in others):
+            return True
+        return any(link._is_wanted() for link in self.feeds)
 
     def _open(self, qos: Qos) -> None:
         changed = self._ends is not None
