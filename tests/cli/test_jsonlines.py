@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import threading
 from collections.abc import Iterator
 
 import pytest
@@ -40,6 +41,23 @@ def test_full_pipe_drops_instead_of_waiting(pipe: Pipe) -> None:
     for line in os.read(pipe[0], 1 << 20).splitlines():
         kept += json.loads(line)["event"] == "tick"
     assert kept + lines.dropped == 200
+    os.close(pipe[0])
+
+
+def test_patient_lines_wait_for_their_reader(pipe: Pipe) -> None:
+    lines = JsonLines(pipe[1], patient=True)
+    read: list[bytes] = []
+
+    def drain() -> None:
+        while sum(map(len, read)) < 200 * 2000:
+            read.append(os.read(pipe[0], 4096))
+
+    reader = threading.Thread(target=drain)
+    reader.start()
+    for _ in range(200):
+        lines.write("tick", {"text": "x" * 2000})
+    reader.join(60)
+    assert lines.dropped == 0
     os.close(pipe[0])
 
 

@@ -136,3 +136,19 @@ def test_ends_after_its_duration_and_says_what_it_waits_for(domain_id: int) -> N
     for name in (spec.name for spec in INPUTS):
         assert f"Waiting for {name} data" in process.stderr
     assert re.search(r" \d+ ticks, 0 commands", process.stderr)
+
+
+def test_virtual_drive_is_the_same_every_time() -> None:
+    command = [*RUN, "--platform", "sim", "--duration", "15", "--json"]
+    runs = [subprocess.run(command, capture_output=True, text=True, timeout=300) for _ in range(2)]
+    assert [run.returncode for run in runs] == [0, 0]
+    ticks = [_ticks(run.stdout) for run in runs]
+    assert ticks[0] == ticks[1]
+    assert len(ticks[0]) == 100
+    assert {tick["outcome"] for tick in ticks[0]} == {"PUBLISHED"}
+    assert "virtual drive of" in runs[0].stderr
+
+
+def _ticks(text: str) -> list[dict[str, Any]]:
+    events = [json.loads(line) for line in text.splitlines()]
+    return [event for event in events if event["event"] == "tick"]

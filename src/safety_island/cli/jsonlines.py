@@ -15,11 +15,13 @@ MAX_LINE = 4096
 class JsonLines:
     """One JSON object a line on a file descriptor; a line that would have to wait is dropped.
 
-    ``dropped`` counts those, and those longer than MAX_LINE.
+    ``dropped`` counts those, and those longer than MAX_LINE. With ``patient`` lines wait for their
+    reader: for virtual time, where nobody is in a hurry.
     """
 
-    def __init__(self, descriptor: int = 1) -> None:
+    def __init__(self, descriptor: int = 1, *, patient: bool = False) -> None:
         self.dropped = 0
+        self._timeout_ms = None if patient else 0
         self._descriptor = descriptor
         self._poll = select.poll()
         self._poll.register(descriptor, select.POLLOUT)
@@ -36,7 +38,7 @@ class JsonLines:
             os.write(self._descriptor, line)
 
     def _is_writable(self) -> bool:
-        ready = self._poll.poll(0)
+        ready = self._poll.poll(self._timeout_ms)
         if ready and ready[0][1] & select.POLLERR:
             raise BrokenPipeError
         return bool(ready)

@@ -38,7 +38,7 @@ tick, leaves the domain and exits 0.
         choices=("posix", "sim"),
         default="posix",
         help="posix: this machine, on DDS; sim: virtual time and topics in memory, with a "
-        "simulated vehicle (default: posix)",
+        "simulated vehicle on the s-curve (default: posix)",
     )
     options.add_duration(parser, 0.0)
     options.add_json(parser, "every tick")
@@ -70,13 +70,20 @@ def _run(arguments: argparse.Namespace, start: StopAtOnce) -> None:
     transport = open_transport(platform, arguments.domain, config, NAME)
     prepare_kernels()
     follower = TrajectoryFollower(parameters)
-    lines = JsonLines() if arguments.json else None
+    lines = JsonLines(patient=platform.name == "sim") if arguments.json else None
     with ControllerNode(platform, transport, follower, parameters.node) as node:
         report = RunReport(node, follower.trace, seconds_since_start, lines)
         node.observers.append(report)
+        vehicle = None
+        if platform.name == "sim":
+            from safety_island.cli.virtual import VirtualVehicle
+
+            vehicle = VirtualVehicle(platform, transport, node.stop)
         with platform.on_stop(node.stop):
             start.disarm()
             node.run(parameters.node.ctrl_period, arguments.duration or None)
             report.finish()
+            if vehicle is not None:
+                vehicle.finish(lines)
             node.close()
     platform.logger.close()

@@ -97,7 +97,7 @@ class RunReport:
         if self._lines is not None:
             self._lines.write("summary", figures)
         median_s = figures["tick_s"]["median"]
-        median = "" if median_s is None else f", tick {median_s * 1e3:.2f} ms at the median"
+        median = "" if not median_s else f", tick {median_s * 1e3:.2f} ms at the median"
         self._node.logger.info(
             "%d ticks, %d commands, %d ticks missed%s",
             self.ticks,

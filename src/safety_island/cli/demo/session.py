@@ -75,14 +75,14 @@ class Session:
 
     def _has_ended(self) -> bool:
         """Whether the main compute has come to its end; raise DemoError when another one has."""
-        for child in self._children:
-            code = child.exit_code
+        ended = [(child, child.exit_code) for child in self._children]
+        for child, code in ended:
             if code is not None and (child.name != VEHICLE or code != 0):
                 self._read(self._children)
                 words = next((line for line in reversed(child.said) if line.strip()), "")
                 last = f"; it said: {words}" if words else ""
                 raise DemoError(f"{child.name} died ({how_it_ended(code)}){last}")
-        return any(child.exit_code is not None for child in self._children)
+        return any(code is not None for _, code in ended)
 
     def _tell(self) -> None:
         now = time.monotonic()
