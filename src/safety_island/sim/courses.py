@@ -28,7 +28,7 @@ WHEELBASE = 2.74
 LEAD_IN = 10.0
 """Path behind the first place of a course [m]; every course also ends in that much straight."""
 
-DWELL_S = 3.0
+DWELL_S = 2.0
 """How long the vehicle stands at a stop that is not the last [s]."""
 
 
