@@ -9,7 +9,7 @@ from safety_island.cli.progress import prepare_kernels
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments: none."""
+    """Declare the arguments."""
     teach(
         parser,
         """
@@ -19,9 +19,10 @@ The folder is $SAFETY_ISLAND_CACHE, else $XDG_CACHE_HOME/safety-island or ~/.cac
 """,
         ("island prepare", "compile what is not compiled yet"),
     )
+    parser.add_argument("--all", action="store_true", help="also what only OSQP and the tests need")
 
 
 def execute(arguments: argparse.Namespace) -> int:
     """Compile, or find that it was done."""
-    prepare_kernels()
+    prepare_kernels(arguments.all)
     return 0

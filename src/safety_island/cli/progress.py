@@ -2,58 +2,80 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Callable, Iterator
+from concurrent.futures import ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
+from multiprocessing import get_context
 from time import perf_counter
 from typing import TextIO
 
 Report = Callable[[str, int, int], None]
-"""Told the name of a kernel, its index and the count, before each one."""
+"""Told the name of a kernel that is done, its index and the count."""
 
 
-def prepare_kernels() -> None:
+def prepare_kernels(on_demand: bool = False) -> None:
     """Load the control kernels, compiling them first when they are not on disk.
 
     A compilation takes tens of seconds once, so it says what it does, on standard error; loading
-    compiled code is quick and leaves nothing on the screen.
+    compiled code is quick and leaves nothing on the screen. ``on_demand``: also those that only
+    some uses need.
     """
-    import safety_island.control.follower  # noqa: F401  (defines every entry)
+    import safety_island.control.follower
+    import safety_island.control.qp_alone  # noqa: F401  (these two define every entry)
     from safety_island.control import kernel
 
-    cached = kernel.is_cached()
-    started = perf_counter()
-    with _display("loading" if cached else "compiling") as show:
-        kernel.prepare(show)
-    if not cached:
+    wanted = kernel.ENTRIES + (kernel.ON_DEMAND if on_demand else [])
+    missing = [item.name for item in wanted if kernel.JIT and not item.is_on_disk()]
+    if missing:
+        started = perf_counter()
+        with _display() as show:
+            _compile(missing, show)
         _say(f"control kernels compiled in {perf_counter() - started:.0f} s")
+    kernel.prepare()
+
+
+def _compile(names: list[str], show: Report) -> None:
+    """Compile each kernel in a process of its own, as many at a time as there are cores."""
+    with ProcessPoolExecutor(os.cpu_count(), mp_context=get_context("spawn")) as pool:
+        running = [pool.submit(_compile_one, name) for name in names]
+        for index, done in enumerate(as_completed(running)):
+            show(done.result(), index, len(names))
+
+
+def _compile_one(name: str) -> str:
+    import safety_island.control.follower
+    import safety_island.control.qp_alone  # noqa: F401
+    from safety_island.control import kernel
+
+    entries = {item.name: item for item in kernel.ENTRIES + kernel.ON_DEMAND}
+    entries[name].prepare()
+    return name
 
 
 @contextmanager
-def _display(verb: str) -> Iterator[Report]:
+def _display() -> Iterator[Report]:
     if sys.stderr.isatty():
-        with _spinner(verb) as show:
+        with _spinner() as show:
             yield show
-    elif verb == "loading":
-        yield lambda name, index, count: None
     else:
         _say("compiling the control kernels, once; this takes some tens of seconds")
-        yield lambda name, index, count: _say(f"  {index + 1} of {count}: {name}")
+        yield lambda name, index, count: _say(f"  {index + 1} of {count} done: {name}")
 
 
 @contextmanager
-def _spinner(verb: str) -> Iterator[Report]:
+def _spinner() -> Iterator[Report]:
     from rich.console import Console
     from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
     columns = (SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
-        task = progress.add_task("control kernels")
+        task = progress.add_task("compiling the control kernels, once; some tens of seconds")
 
         def show(name: str, index: int, count: int) -> None:
-            progress.update(
-                task, description=f"{verb} control kernels, {index + 1} of {count}: {name}"
-            )
+            text = f"compiling the control kernels, {index + 1} of {count} done: {name}"
+            progress.update(task, description=text)
 
         yield show
 

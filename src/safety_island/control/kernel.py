@@ -9,15 +9,12 @@ does not compile; that private option is one reason for the exact version pin.
 from __future__ import annotations
 
 import fcntl
-import hashlib
 import os
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from functools import cache
 from pathlib import Path
 from typing import Any
-
-import numpy as np
 
 JIT = os.environ.get("SAFETY_ISLAND_JIT", "1") != "0"
 """False when the kernels run as plain Python."""
@@ -27,35 +24,21 @@ FLAGS: dict[str, Any] = {"error_model": "numpy", "fastmath": False, "_nrt": Fals
 ENTRIES: list[Entry] = []
 """Every kernel that the island calls, in the order of definition."""
 
-
-@cache
-def source_hash() -> str:
-    """Hash of every kernel source and of the versions of Numba and NumPy; read once."""
-    import numba
-
-    digest = hashlib.sha256(f"{numba.__version__} {np.__version__}".encode())
-    for source in sorted(Path(__file__).parent.glob("*.py")):
-        digest.update(source.read_bytes())
-    return digest.hexdigest()[:16]
+ON_DEMAND: list[Entry] = []
+"""Kernels that only some uses call."""
 
 
 def cache_folder() -> Path:
-    """Where compiled kernels are kept, keyed by the hash of what they come from.
+    """Where compiled kernels are kept, keyed by the hash of what they come from."""
+    from safety_island.control import kernel_cache
 
-    Numba itself would not notice an edit in a function that was imported from another file.
-    """
-    home = os.environ.get("XDG_CACHE_HOME")
-    default = (Path(home) if home else Path("~/.cache").expanduser()) / "safety-island"
-    root = Path(os.environ.get("SAFETY_ISLAND_CACHE") or default)
-    return root / f"kernels-{source_hash()}"
+    return kernel_cache.cache_folder()
 
 
 @contextmanager
 def _one_at_a_time(name: str) -> Iterator[None]:
     """Let one process compile an entry; the next one waits, and finds the result on disk."""
-    folder = cache_folder()
-    folder.mkdir(parents=True, exist_ok=True)
-    with (folder / f"{name}.lock").open("w") as lock:
+    with (cache_folder() / f"{name}.lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         yield
 
@@ -63,8 +46,10 @@ def _one_at_a_time(name: str) -> Iterator[None]:
 def _njit(**options: Any) -> Callable[[Any], Any]:
     import numba
 
+    from safety_island.control.kernel_cache import LOCATOR
+
     settings: Any = numba.config
-    settings.CACHE_DIR = str(cache_folder())
+    settings.CACHE_LOCATOR_CLASSES = LOCATOR
     decorator: Callable[[Any], Any] = numba.njit(**FLAGS, **options)
     return decorator
 
@@ -90,8 +75,7 @@ class Entry:
         self.arguments = arguments
         self.call: Callable[..., int] = function
         self._dispatcher = _njit(cache=True)(function) if JIT else None
-        if not on_demand:
-            ENTRIES.append(self)
+        (ON_DEMAND if on_demand else ENTRIES).append(self)
 
     def signature(self) -> tuple[Any, ...]:
         """The Numba types of the arguments."""
@@ -102,6 +86,11 @@ class Entry:
             scalars[a] if a in scalars else numba.types.Array(numba.from_dtype(a), 1, "C")
             for a in self.arguments
         )
+
+    def is_on_disk(self) -> bool:
+        """Whether compiled code of it was kept by this version of Python."""
+        version = f"py{sys.version_info.major}{sys.version_info.minor}"
+        return any(cache_folder().glob(f"*.{self.name}-*.{version}*.nbi"))
 
     def prepare(self) -> None:
         """Compile, or load the compiled code from disk; then refuse any other argument type."""
@@ -122,7 +111,7 @@ def entry(*arguments: Any, on_demand: bool = False) -> Callable[[Callable[..., i
 
 def is_cached() -> bool:
     """Whether compiled code for these sources is on disk (so that a start takes no compilation)."""
-    return not JIT or any(cache_folder().rglob("*.nbi"))
+    return not JIT or all(item.is_on_disk() for item in ENTRIES)
 
 
 def prepare(report: Callable[[str, int, int], None] | None = None) -> None:
