@@ -1,0 +1,206 @@
+"""The script ``./island``: makes .venv once, repairs it when needed, says what is missing.
+
+A stand-in for uv makes the environment here, so no test needs the network.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import stat
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+TOOLS = ("sh", "dirname", "readlink", "cat", "cksum", "rm", "mkdir", "ln", "flock", "expr", "chmod")
+
+UV = """#!/bin/sh
+echo "uv $*" >>"$UV_LOG"
+[ ! -e "$UV_LOG.fail" ] || exit 1
+if [ "$1" = venv ]; then
+    while [ $# -gt 1 ]; do shift; done
+    mkdir -p "$1/bin"
+    ln -s "$REAL_PYTHON" "$1/bin/python"
+    printf '#!/bin/sh\\necho ran "$@"\\n' >"$1/bin/island"
+    chmod +x "$1/bin/island"
+fi
+"""
+
+
+class Door:
+    """A copy of the script in a folder of its own, and a PATH with little on it."""
+
+    def __init__(self, folder: Path) -> None:
+        self.root = folder / "a clone"
+        self.root.mkdir()
+        for name in ("island", "pyproject.toml", "requirements.lock", "requirements-dev.lock"):
+            shutil.copy(ROOT / name, self.root)
+        self.bin = folder / "bin"
+        self.bin.mkdir()
+        for tool in TOOLS:
+            found = shutil.which(tool)
+            assert found is not None, tool
+            (self.bin / tool).symlink_to(found)
+        self.log = folder / "uv.log"
+
+    def add(self, name: str, text: str) -> None:
+        """Put a program on the PATH."""
+        path = self.bin / name
+        path.write_text(text)
+        path.chmod(path.stat().st_mode | stat.S_IXUSR)
+
+    def add_python(self, version: str, *, modules: bool = True) -> None:
+        """Put a ``python3`` on the PATH that answers as one of that version would."""
+        good = tuple(map(int, version.split("."))) >= (3, 11)
+        self.add(
+            "python3",
+            "#!/bin/sh\n"
+            f"case $* in *ensurepip*) exit {0 if modules else 1} ;; esac\n"
+            f"echo {version}\nexit {0 if good else 1}\n",
+        )
+
+    def run(
+        self, *arguments: str, script: Path | None = None, cwd: Path | None = None
+    ) -> subprocess.CompletedProcess[str]:
+        """Run the script."""
+        environment = {
+            "PATH": str(self.bin),
+            "UV_LOG": str(self.log),
+            "REAL_PYTHON": sys.executable,
+            "HOME": os.environ.get("HOME", "/"),
+        }
+        command = [str(self.bin / "sh"), str(script or self.root / "island"), *arguments]
+        return subprocess.run(
+            command, env=environment, cwd=cwd, capture_output=True, text=True, timeout=60
+        )
+
+    def calls(self) -> list[str]:
+        """What uv was asked for since the last call."""
+        lines = self.log.read_text().splitlines() if self.log.exists() else []
+        self.log.unlink(missing_ok=True)
+        return [" ".join(line.split()[1:3]) for line in lines]
+
+
+@pytest.fixture
+def door(tmp_path: Path) -> Door:
+    return Door(tmp_path)
+
+
+@pytest.fixture
+def with_uv(door: Door) -> Door:
+    door.add("uv", UV)
+    door.add_python("3.12.1")
+    return door
+
+
+FIRST_USE = ["venv --quiet", "pip install", "pip install"]
+
+
+def test_first_use_makes_everything_then_nothing_more(with_uv: Door) -> None:
+    first = with_uv.run("demo", "--plain", "two words")
+    assert (first.returncode, first.stdout) == (0, "ran demo --plain two words\n")
+    assert "making .venv with Python 3.12.1" in first.stderr
+    assert first.stderr.endswith("island: ready\n")
+    assert with_uv.calls() == FIRST_USE
+    second = with_uv.run("run")
+    assert (second.stdout, second.stderr) == ("ran run\n", "")
+    assert with_uv.calls() == []
+
+
+def test_works_through_a_symlink_from_anywhere(with_uv: Door, tmp_path: Path) -> None:
+    link = tmp_path / "link to island"
+    link.symlink_to(with_uv.root / "island")
+    found = with_uv.run("--help", script=link, cwd=Path("/"))
+    assert found.stdout == "ran --help\n"
+    assert (with_uv.root / ".venv" / "made-run").exists()
+
+
+def test_changed_lock_installs_again(with_uv: Door) -> None:
+    with_uv.run()
+    with_uv.calls()
+    with (with_uv.root / "requirements.lock").open("a") as lock:
+        lock.write("# another line\n")
+    with_uv.run()
+    assert with_uv.calls() == ["pip install", "pip install"]
+
+
+def test_interrupted_start_is_repaired(with_uv: Door) -> None:
+    mark = Path(f"{with_uv.log}.fail")
+    mark.touch()
+    failed = with_uv.run()
+    assert failed.returncode == 1
+    assert failed.stderr.splitlines()[-1].startswith("island: error: uv could not make")
+    mark.unlink()
+    with_uv.calls()
+    assert with_uv.run("run").stdout == "ran run\n"
+    assert with_uv.calls() == FIRST_USE
+
+
+def test_failed_installation_is_done_again(with_uv: Door) -> None:
+    with_uv.run()
+    lock = with_uv.root / "requirements.lock"
+    lock.write_text(lock.read_text() + "#\n")
+    mark = Path(f"{with_uv.log}.fail")
+    mark.touch()
+    failed = with_uv.run()
+    assert failed.returncode == 1
+    assert "could not install requirements.lock" in failed.stderr.splitlines()[-1]
+    mark.unlink()
+    lock.write_text(lock.read_text()[:-2])
+    with_uv.calls()
+    with_uv.run()
+    assert with_uv.calls() == ["pip install", "pip install"], "the old stamp is gone"
+
+
+def test_environment_that_lost_its_python_is_replaced(with_uv: Door) -> None:
+    with_uv.run()
+    python = with_uv.root / ".venv" / "bin" / "python"
+    python.unlink()
+    python.symlink_to("/nowhere/python")
+    with_uv.calls()
+    again = with_uv.run("run")
+    assert again.stdout == "ran run\n"
+    assert "replacing a .venv that does not work" in again.stderr
+    assert with_uv.calls() == FIRST_USE
+
+
+def test_dev_brings_the_tests_too(with_uv: Door) -> None:
+    assert with_uv.run("dev").returncode == 0
+    assert "requirements-dev.lock" in with_uv.log.read_text()
+    with_uv.calls()
+    assert with_uv.run("run").stdout == "ran run\n"
+    assert with_uv.calls() == [], "what the tests need includes what a run needs"
+
+
+def error_of(result: subprocess.CompletedProcess[str]) -> str:
+    """The one line of an error."""
+    assert result.returncode == 1
+    assert result.stdout == ""
+    assert result.stderr.count("\n") == 1
+    return result.stderr
+
+
+def test_no_python_is_one_line(door: Door) -> None:
+    assert "needs Python 3.11, 3.12 or 3.13 on PATH, found none;" in error_of(door.run())
+
+
+def test_old_python_is_one_line(door: Door) -> None:
+    door.add_python("3.9.18")
+    assert "found python3 3.9.18;" in error_of(door.run())
+
+
+def test_missing_venv_module_names_the_package(door: Door) -> None:
+    door.add_python("3.11.2", modules=False)
+    assert "sudo apt-get install python3.11-venv" in error_of(door.run())
+
+
+def test_shell_scripts_are_clean() -> None:
+    checker = Path(sys.executable).with_name("shellcheck")
+    if not checker.exists():
+        pytest.skip("shellcheck is not installed")
+    scripts = [ROOT / "island", ROOT / "tools" / "lock", ROOT / ".ci" / "run"]
+    result = subprocess.run([checker, *scripts], capture_output=True, text=True, timeout=60)
+    assert result.stdout == ""

@@ -1,0 +1,54 @@
+"""The lock files fit pyproject.toml and each other, and name no host and no path."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+LOCKS = ("requirements.lock", "requirements-dev.lock")
+PIN = re.compile(r"([a-z0-9-]+)==(\S+) ;.*\\$")
+
+
+def pins(name: str) -> dict[str, set[str]]:
+    """Versions of each package in a lock file (one for each Python that needs another)."""
+    found: dict[str, set[str]] = {}
+    for line in (ROOT / name).read_text().splitlines():
+        if match := PIN.match(line):
+            found.setdefault(match[1], set()).add(match[2])
+    return found
+
+
+def wanted() -> list[str]:
+    """Requirements of the project itself and of its extras."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    extras = [text for group in project["optional-dependencies"].values() for text in group]
+    return [*project["dependencies"], *extras]
+
+
+@pytest.mark.parametrize("lock", LOCKS)
+def test_every_requirement_is_locked(lock: str) -> None:
+    locked = pins(lock)
+    for requirement in wanted():
+        name, relation, version = re.split(r"(==|>=)", requirement)
+        assert name in locked, f"{requirement}: run tools/lock"
+        if relation == "==":
+            assert locked[name] == {version}, f"{requirement}: run tools/lock"
+
+
+def test_development_adds_and_changes_nothing() -> None:
+    run, dev = (pins(lock) for lock in LOCKS)
+    assert {name: dev.get(name) for name in run} == run
+
+
+@pytest.mark.parametrize("lock", LOCKS)
+def test_every_package_has_a_hash_and_no_host(lock: str) -> None:
+    text = (ROOT / lock).read_text()
+    assert "://" not in text
+    assert not re.search(r"(^|\s)/", text), "a path of some machine"
+    packages = re.split(r"\n(?=[a-z0-9-]+==)", text)[1:]
+    assert len(packages) > 20
+    assert all("--hash=sha256:" in package for package in packages)
