@@ -44,6 +44,14 @@ def test_full_pipe_drops_instead_of_waiting(pipe: Pipe) -> None:
     os.close(pipe[0])
 
 
+def test_a_full_disk_drops_lines() -> None:
+    full = os.open("/dev/full", os.O_WRONLY)
+    lines = JsonLines(full)
+    lines.write("tick", {"number": 1})
+    os.close(full)
+    assert lines.dropped == 1
+
+
 def test_patient_lines_wait_for_their_reader(pipe: Pipe) -> None:
     lines = JsonLines(pipe[1], patient=True)
     read: list[bytes] = []

@@ -42,6 +42,26 @@ def test_an_exception_leaves_the_garbage_collector_as_it_was() -> None:
     assert gc.get_freeze_count() == 0
 
 
+def test_what_comes_before_the_first_tick_costs_no_tick(monkeypatch: pytest.MonkeyPatch) -> None:
+    platform = make()
+    collect = gc.collect
+
+    def slow_collect(generation: int = 2) -> int:
+        platform.clock.advance_to_ns(platform.clock.monotonic_ns() + 900_000_000)
+        return collect(generation)
+
+    monkeypatch.setattr(gc, "collect", slow_collect)
+    seen: list[Tick] = []
+
+    class First(Node):
+        def on_tick(self, due: Tick) -> None:
+            seen.append(due)
+            self.stop()
+
+    First("first", platform, MemoryDomain(platform.clock)).run(0.1)
+    assert [due.skipped for due in seen] == [0]
+
+
 def test_a_stop_before_the_run_ends_it_at_once() -> None:
     platform = make()
 

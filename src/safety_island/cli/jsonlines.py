@@ -8,6 +8,8 @@ import os
 import select
 from collections.abc import Mapping
 
+from safety_island.cli.streams import is_full
+
 MAX_LINE = 4096
 """What a pipe that polls as writable takes at once without blocking (PIPE_BUF of Linux)."""
 
@@ -35,7 +37,15 @@ class JsonLines:
         if len(line) > MAX_LINE or not self._is_writable():
             self.dropped += 1
         else:
+            self._put(line)
+
+    def _put(self, line: bytes) -> None:
+        try:
             os.write(self._descriptor, line)
+        except OSError as error:
+            if not is_full(error):
+                raise
+            self.dropped += 1  # a full disk under the report is no reason to stop driving
 
     def _is_writable(self) -> bool:
         ready = self._poll.poll(self._timeout_ms)

@@ -8,6 +8,7 @@ import sys
 from collections.abc import Sequence
 
 from safety_island import __version__
+from safety_island.cli import streams
 from safety_island.cli.parser import Parser, UsageError, nearest
 from safety_island.cli.table import COMMANDS, Command, find, load
 from safety_island.errors import IslandError
@@ -66,6 +67,7 @@ def dispatch(arguments: list[str]) -> int:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run ``island``; return the exit code (a user's error is one line on standard error)."""
+    streams.open_missing()
     try:
         code = dispatch(list(sys.argv[1:] if argv is None else argv))
         sys.stdout.flush()
@@ -74,11 +76,13 @@ def main(argv: Sequence[str] | None = None) -> int:
         return _complain(str(error), error.exit_code)
     except KeyboardInterrupt:
         return 128 + signal.SIGINT
-    except BrokenPipeError:
-        # Nobody reads on; keep the interpreter from trying again at its end.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except BrokenPipeError:  # nobody reads on
+        streams.give_up_output()
         return 128 + signal.SIGPIPE
     except Exception as error:
+        if isinstance(error, OSError) and streams.is_full(error):
+            streams.give_up_output()
+            return _complain(f"cannot write: {error.strerror}; make room and try again", 1)
         if os.environ.get(DEBUG):
             raise
         fault = f"{type(error).__name__}: {error}"

@@ -31,7 +31,7 @@ engaged when commands come. When they stop coming the vehicle brakes, as Autowar
         "--course",
         choices=tuple(COURSES),
         default=DEFAULT_COURSE,
-        help=f"{courses} (default: {DEFAULT_COURSE})",
+        help=f"{courses} (default: {DEFAULT_COURSE})".replace("%", "%%"),
     )
     parser.add_argument("--repeat", action="store_true", help="drive lap after lap")
     parser.add_argument(

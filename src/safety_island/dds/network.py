@@ -25,7 +25,7 @@ def check_interface(name: str) -> None:
         hint = f"; did you mean {near[0]}?" if near else ""
         raise ConfigurationError(
             f"network interface {name!r} does not exist; this machine has"
-            f" {', '.join(found)}{hint} Choose one with --interface or in the configuration"
+            f" {', '.join(found)}{hint}. Choose one with --interface or in the configuration"
         )
     if not _is_up(name):
         raise ConfigurationError(f"network interface {name!r} is down; run: ip link set {name} up")

@@ -63,20 +63,24 @@ class Node:
 
         A tick that has begun is finished. Call from the main thread, else signals are not heard.
         """
+        with self.platform.on_stop(self.stop), quiet_garbage_collector():
+            self._run(period_s, duration_s)
+
+    def _run(self, period_s: float, duration_s: float | None) -> None:
+        """Tick on a grid that starts now; what took its time before must not cost the first one."""
         timer = self.platform.new_timer(period_s)
         self._wake = timer.wake
         last_ns = self.clock.monotonic_ns()
         end_ns = math.inf if duration_s is None else last_ns + (duration_s - period_s / 2) * 1e9
         self.logger.info("%s is live, with a period of %g ms", self.name, period_s * 1e3)
-        with self.platform.on_stop(self.stop), quiet_garbage_collector():
-            while not self.stopping and last_ns < end_ns:
-                due = timer.wait()
-                if due is None:
-                    continue
-                self.on_tick(due)
-                last_ns = due.due_ns
-                if timer.ticks % COLLECT_EVERY == 0:
-                    gc.collect(1)
+        while not self.stopping and last_ns < end_ns:
+            due = timer.wait()
+            if due is None:
+                continue
+            self.on_tick(due)
+            last_ns = due.due_ns
+            if timer.ticks % COLLECT_EVERY == 0:
+                gc.collect(1)
         self._wake = self._nothing
         self.logger.info("%s ends after %d ticks, %d missed", self.name, timer.ticks, timer.skipped)
         timer.close()

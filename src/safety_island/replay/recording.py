@@ -105,6 +105,8 @@ class Recording:
 def load(path: Path) -> Recording:
     """Read a recorded run. Raises RecordingError with what is wrong with the file."""
     try:
+        if path.exists() and not zipfile.is_zipfile(path):
+            raise RecordingError(f"{path} is no recorded run: expected a NumPy archive (.npz)")
         with np.load(path, allow_pickle=False) as data:
             missing = [name for name in _ARRAYS if name not in data.files]
             if missing:
@@ -199,6 +201,8 @@ def find(paths: Sequence[Path]) -> list[Path]:
     found: list[Path] = []
     for path in paths:
         if not path.is_dir():
+            if not path.exists():
+                raise RecordingError(f"{path} does not exist: name a recorded run (.npz)")
             found.append(path)
             continue
         runs = sorted(p for p in path.rglob("*.npz") if "_dump" not in p.stem)

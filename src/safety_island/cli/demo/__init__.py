@@ -19,7 +19,7 @@ from safety_island.cli.demo.session import Session
 from safety_island.cli.demo.show import PlainShow, TerminalShow
 from safety_island.cli.domains import pairs_from, reserve
 from safety_island.cli.parameters import read_parameters
-from safety_island.cli.parser import teach
+from safety_island.cli.parser import UsageError, teach
 from safety_island.errors import IslandError
 from safety_island.sim.courses import COURSES, DEFAULT_COURSE, load_course
 
@@ -68,6 +68,8 @@ planner said, and no tick was missed.
 
 def execute(arguments: argparse.Namespace) -> int:
     """Run the demo; 0 when all went well."""
+    if arguments.domains is not None and len(set(arguments.domains)) == 1:
+        raise UsageError("--domains: found the same domain twice; a bridge needs two")
     read_parameters(arguments.params, arguments.period)  # a mistake is told before anything starts
     _prepare()
     signal.signal(signal.SIGTERM, signal.default_int_handler)
