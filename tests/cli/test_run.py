@@ -98,7 +98,6 @@ def test_percentile_is_the_nearest_rank() -> None:
     ("arguments", "text"),
     [
         (["--domain", "233"], "'233' is not a DDS domain id"),
-        (["--interface", "nowhere0"], "nowhere0"),
         (["--params", "nosuch"], "parameter set 'nosuch' is not shipped"),
         (["--params", "/nowhere.yaml"], "/nowhere.yaml: cannot be read"),
         (["--platform", "zephyr"], "invalid choice: 'zephyr'"),

@@ -4,11 +4,8 @@ from __future__ import annotations
 
 import argparse
 
-from safety_island.cli import options
-from safety_island.cli.jsonlines import JsonLines
-from safety_island.cli.parameters import read_parameters
+from safety_island.cli import configuration, options
 from safety_island.cli.parser import teach
-from safety_island.cli.process import seconds_since_start
 from safety_island.cli.stopping import StopAtOnce
 
 
@@ -18,8 +15,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
         parser,
         """
 Run the safety island: subscribe to trajectory, odometry, acceleration, steering and operation
-mode, and publish a control command every period. Stop it with Ctrl-C or SIGTERM: it finishes its
-tick, leaves the domain and exits 0.
+mode, and send a control command every period, over DDS, CAN or both. The configuration is that of
+the target (see 'island config'); options win over it. The start waits for the address of the
+network interface. Stop it with Ctrl-C or SIGTERM: it finishes its tick, closes CAN and DDS, and
+exits 0.
 """,
         ("island run", "domain 2 on this machine, 150 ms, the default parameters"),
         ("island run --interface tap0 --period 0.03", "on a network, at Autoware's own period"),
@@ -27,12 +26,16 @@ tick, leaves the domain and exits 0.
             "island run --params firmware my/pid.param.yaml",
             "the firmware's values, a file over them",
         ),
+        ("island run -t freertos_posix", "as the simulator: DDS, and CAN frames in memory"),
+        ("island run --can socketcan:can0 --can-log drive.log", "DDS and a real bus, with a log"),
         ("island run --duration 10 --json", "ten seconds, every tick as a JSON line"),
     )
-    options.add_domain(parser, 2, "the safety island")
+    configuration.add_target(parser, "posix")
+    configuration.add_configuration(parser)
     options.add_params(parser)
     options.add_period(parser)
-    options.add_interface(parser)
+    _add_network(parser)
+    _add_can(parser)
     parser.add_argument(
         "--platform",
         choices=("posix", "sim"),
@@ -42,48 +45,52 @@ tick, leaves the domain and exits 0.
     )
     options.add_duration(parser, 0.0)
     options.add_json(parser, "every tick")
+    parser.add_argument("--log-json", action="store_true", help="log lines as JSON objects")
+
+
+def _add_network(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--domain",
+        type=options.domain_id,
+        metavar="ID",
+        help="DDS domain of the safety island (default: DDS_DOMAIN_ID of the configuration, 2)",
+    )
+    parser.add_argument(
+        "--interface",
+        metavar="NAME",
+        help="network interface, for example eth0 or tap0 (default: DDS_NETWORK_INTERFACE of the "
+        "configuration; posix: lo, this machine only; CYCLONEDDS_URI, when set, configures DDS "
+        "instead)",
+    )
+    parser.add_argument(
+        "--sntp",
+        metavar="SERVER",
+        help="set the wall clock of the island, not of the machine, by this SNTP server "
+        "(HOST or HOST:PORT); no answer ends the start",
+    )
+
+
+def _add_can(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--mode",
+        choices=("DDS_ONLY", "CAN_ONLY", "DDS_AND_CAN"),
+        help="where commands go (default: CONTROL_CMD_OUTPUT_... of the configuration)",
+    )
+    parser.add_argument(
+        "--can",
+        metavar="BUS",
+        help="CAN bus, for example socketcan:can0, udp_multicast:239.74.163.2 or mock (default: "
+        "CAN_DEVICE of the configuration); without --mode it adds CAN to DDS",
+    )
+    parser.add_argument(
+        "--can-log", metavar="FILE", help="write each frame that is sent, as 'candump -L' does"
+    )
 
 
 def execute(arguments: argparse.Namespace) -> int:
     """Run until told to stop."""
     with StopAtOnce() as start:
-        _run(arguments, start)
+        from safety_island.cli.run_island import run
+
+        run(arguments, start)
     return 0
-
-
-def _run(arguments: argparse.Namespace, start: StopAtOnce) -> None:
-    parameters = read_parameters(arguments.params, arguments.period).parameters
-    from safety_island.cli.progress import prepare_kernels
-    from safety_island.cli.run_report import RunReport
-    from safety_island.control.follower import TrajectoryFollower
-    from safety_island.dds.config import DdsConfig
-    from safety_island.node import ControllerNode, open_transport
-    from safety_island.node.controller import NAME
-    from safety_island.params import notes
-    from safety_island.platform import load
-
-    platform = load(arguments.platform)
-    for note in notes(parameters):
-        platform.logger.info("%s", note)
-    # Discovery goes on while the kernels are loaded.
-    config = DdsConfig(interface=arguments.interface)
-    transport = open_transport(platform, arguments.domain, config, NAME)
-    prepare_kernels()
-    follower = TrajectoryFollower(parameters)
-    lines = JsonLines(patient=platform.name == "sim") if arguments.json else None
-    with ControllerNode(platform, transport, follower, parameters.node) as node:
-        report = RunReport(node, follower.trace, seconds_since_start, lines)
-        node.observers.append(report)
-        vehicle = None
-        if platform.name == "sim":
-            from safety_island.cli.virtual import VirtualVehicle
-
-            vehicle = VirtualVehicle(platform, transport, node.stop)
-        with platform.on_stop(node.stop):
-            start.disarm()
-            node.run(parameters.node.ctrl_period, arguments.duration or None)
-            report.finish()
-            if vehicle is not None:
-                vehicle.finish(lines)
-            node.close()
-    platform.logger.close()

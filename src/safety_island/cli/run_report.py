@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from typing import Any, Protocol
 
 from safety_island.cli.jsonlines import JsonLines
+from safety_island.cli.run_can import CanSide
 from safety_island.control.records import Records
 from safety_island.control.status import LongitudinalState, MpcStatus
 from safety_island.node import Outcome, TickReport
@@ -29,7 +30,8 @@ class RunReport:
     """An observer of the controller node.
 
     ``trace`` is the trajectory follower's TRACE record; ``since_start`` tells the time [s] since
-    the start of the process; ``lines`` None: only the first command and the summary, as log lines.
+    the start of the process; ``lines`` None: only the first command and the summary, as log lines;
+    ``can``: what is sent on CAN, if anything.
     """
 
     def __init__(
@@ -38,6 +40,7 @@ class RunReport:
         trace: Records,
         since_start: Callable[[], float],
         lines: JsonLines | None,
+        can: CanSide | None = None,
     ) -> None:
         self.published = self.skipped = self.ticks = self.refused = 0
         self.first_control_s: float | None = None
@@ -45,6 +48,7 @@ class RunReport:
         self._trace = trace
         self._since_start = since_start
         self._lines = lines
+        self._can = can
         self._max_lateness_s = 0.0
         self._times: list[float] = []
 
@@ -58,7 +62,12 @@ class RunReport:
             self._take_published(report)
         if self._lines is not None:
             ages = sample_ages(self._node.inputs, self._node.clock.wall_ns())
-            self._lines.write("tick", tick_values(report, self._trace, ages))
+            values = tick_values(report, self._trace, ages)
+            if self._can is not None:
+                values["can"] = self._can.take()
+            self._lines.write("tick", values)
+        elif self._can is not None:
+            self._can.show()
 
     def _take_published(self, report: TickReport) -> None:
         self.published += 1
@@ -78,6 +87,7 @@ class RunReport:
         """Return the figures of the whole run; times in seconds."""
         ordered = sorted(self._times)
         return {
+            "can": self._can.summary() if self._can is not None else None,
             "ticks": self.ticks,
             "published": self.published,
             "missed_ticks": self.skipped,

@@ -23,6 +23,7 @@ _MESSAGE_OVERHEAD = 56
 """Bytes of an RTPS message around one fragment: 1400 leaves the usual 1344."""
 _MESSAGE_SIZES = (576, 65500)
 _ANNOUNCEMENTS_PER_LEASE = 3
+_VERBOSITIES = ("none", "config", "finest")
 
 
 @dataclass(frozen=True)
@@ -34,7 +35,9 @@ class DdsConfig:
     ``multicast`` is ``spdp`` (discovery only), ``off`` or ``full``; ``max_message_size`` [B] must
     fit the network's MTU; ``receive_buffer`` [B] is the least size of the socket's buffer;
     ``lease_s`` [s] is the time after which others miss this process; ``domain_tag`` keeps apart
-    what shares a domain id; ``loss`` is the share of sent packets to drop (0 to 1, for tests).
+    what shares a domain id; ``loss`` is the share of sent packets to drop (0 to 1, for tests);
+    ``log_level`` is what the library tells on standard error (0 nothing, 1 warnings and its
+    configuration, 2 everything).
     ConfigurationError for every value that cannot work.
     """
 
@@ -47,12 +50,14 @@ class DdsConfig:
     lease_s: float = 1.0
     domain_tag: str = ""
     loss: float = 0.0
+    log_level: int = 0
 
     def __post_init__(self) -> None:
         """Check what can be checked without the network."""
         _range("max_message_size", self.max_message_size, *_MESSAGE_SIZES, unit="bytes")
         _range("lease_s", self.lease_s, 0.1, 60.0, unit="s")
         _range("loss", self.loss, 0.0, 1.0)
+        _range("log_level", self.log_level, 0, len(_VERBOSITIES) - 1)
         if self.receive_buffer is not None:
             _range("receive_buffer", self.receive_buffer, 4096, 2**30, unit="bytes")
         if self.multicast not in _ALLOW_MULTICAST:
@@ -91,7 +96,8 @@ class DdsConfig:
         general += _element("MaxMessageSize", f"{self.max_message_size}B")
         general += _element("FragmentSize", f"{self.max_message_size - _MESSAGE_OVERHEAD}B")
         domain = _element("General", general) + _element("Discovery", self._discovery(domain_id))
-        return _document(domain + _COMPATIBILITY + _element("Internal", self._internal()))
+        domain += _COMPATIBILITY + _element("Internal", self._internal())
+        return _document(domain + _tracing(self.log_level))
 
     @property
     def _interface(self) -> str | None:
@@ -142,9 +148,17 @@ def user_xml() -> str | None:
     return os.environ.get(URI) or None
 
 
-def defaults_xml(lease_s: float = 1.0) -> str:
-    """Return what a user's own XML is laid over: the settings without which peers do not match."""
-    return _document(_COMPATIBILITY + _element("Discovery", _lease(lease_s)))
+def defaults_xml(lease_s: float = 1.0, log_level: int = 0) -> str:
+    """Return what a user's own XML is laid over: what peers need to match, and what is told."""
+    discovery = _element("Discovery", _lease(lease_s))
+    return _document(_COMPATIBILITY + discovery + _tracing(log_level))
+
+
+def _tracing(log_level: int) -> str:
+    if not log_level:
+        return ""
+    verbosity = _element("Verbosity", _VERBOSITIES[log_level])
+    return _element("Tracing", verbosity + _element("OutputFile", "stderr"))
 
 
 def _lease(lease_s: float) -> str:

@@ -66,7 +66,7 @@ def _effective_xml(domain_id: int, config: DdsConfig) -> str:
         return config.xml(domain_id)
     for part in _parts(uri):
         _check_user_xml(part)
-    return f"{defaults_xml(config.lease_s)},{uri}"
+    return f"{defaults_xml(config.lease_s, config.log_level)},{uri}"
 
 
 def _parts(uri: str) -> list[str]:

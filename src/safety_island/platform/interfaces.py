@@ -10,6 +10,7 @@ from collections.abc import Callable
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from enum import IntEnum
+from ipaddress import IPv4Address, IPv4Interface
 from typing import NamedTuple, Protocol
 
 from safety_island.errors import IslandError
@@ -137,6 +138,19 @@ class Network(Protocol):
 
     def describe(self, interface: str) -> str:
         """What is known of the interface, in a few words for an error message."""
+
+    def configure(
+        self,
+        interface: str,
+        vlan: int,
+        address: IPv4Interface | None,
+        gateway: IPv4Address | None,
+    ) -> str:
+        """Give an interface, or a VLAN of it (id 1 to 4094), an address and a default route.
+
+        Returns the name of what carries the address. What is there already is left as it is.
+        Raises NetworkError.
+        """
 
     def wait_for_address(
         self, interface: str, limit_s: float, stopped: Callable[[], bool] = ...

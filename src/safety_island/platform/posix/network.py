@@ -8,12 +8,14 @@ import socket
 import struct
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from ipaddress import IPv4Address, IPv4Interface
 
 from safety_island.platform.interfaces import Clock, NetworkError
 
 SIOCGIFFLAGS = 0x8913
 SIOCGIFADDR = 0x8915
 IFF_UP = 1
+IFF_RUNNING = 0x40
 LONGEST_NAME = 15
 """IFNAMSIZ without the closing NUL; the kernel would take a cut name for another interface's."""
 RTMGRP_LINK = 1
@@ -83,9 +85,26 @@ class PosixNetwork:
         address = self.address(interface)
         if address is not None:
             return f"it has the IPv4 address {address}"
-        flags = _ask(SIOCGIFFLAGS, interface)
-        is_up = flags is not None and bool(struct.unpack_from("=H", flags)[0] & IFF_UP)
-        return "it is up and has no IPv4 address" if is_up else "it is down"
+        answer = _ask(SIOCGIFFLAGS, interface)
+        flags = struct.unpack_from("=H", answer)[0] if answer is not None else 0
+        if not flags & IFF_UP:
+            return "it is down"
+        link = "" if flags & IFF_RUNNING else ", its link is down,"
+        return f"it is up{link} and has no IPv4 address"
+
+    def configure(
+        self,
+        interface: str,
+        vlan: int,
+        address: IPv4Interface | None,
+        gateway: IPv4Address | None,
+    ) -> str:
+        """Give an interface, or a VLAN of it, an address and a default route; needs privileges."""
+        from safety_island.platform.posix.network_setup import configure
+
+        if interface not in (name for _, name in socket.if_nameindex()):
+            raise NetworkError(f"interface '{interface}': {self.describe(interface)}")
+        return configure(interface, vlan, address, gateway)
 
     def wait_for_address(
         self, interface: str, limit_s: float, stopped: Callable[[], bool] = _never

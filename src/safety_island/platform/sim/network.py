@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from ipaddress import IPv4Address, IPv4Interface
 
 from safety_island.platform.interfaces import NetworkError
 from safety_island.platform.sim.clock import SimClock
@@ -36,6 +37,22 @@ class SimNetwork:
             return f"there is no such interface; this simulation has {names}"
         address = self.addresses[interface]
         return f"it has the IPv4 address {address}" if address else "it has no IPv4 address"
+
+    def configure(
+        self,
+        interface: str,
+        vlan: int,
+        address: IPv4Interface | None,
+        gateway: IPv4Address | None,
+    ) -> str:
+        """Note the address of the interface, or of a new VLAN of it; routes are not modelled."""
+        if interface not in self.addresses:
+            raise NetworkError(f"interface '{interface}': {self.describe(interface)}")
+        name = f"{interface}.{vlan}" if vlan else interface
+        self.addresses.setdefault(name, None)
+        if address is not None:
+            self.addresses[name] = str(address.ip)
+        return name
 
     def wait_for_address(
         self, interface: str, limit_s: float, stopped: Callable[[], bool] = _never

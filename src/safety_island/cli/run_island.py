@@ -1,0 +1,82 @@
+"""What ``island run`` does: settings, network, time, CAN, DDS, kernels, then ticks."""
+
+from __future__ import annotations
+
+import argparse
+from contextlib import ExitStack
+from typing import NamedTuple
+
+from safety_island.cli.configuration import resolved, run_configuration
+from safety_island.cli.jsonlines import JsonLines
+from safety_island.cli.parameters import read_parameters
+from safety_island.cli.process import seconds_since_start
+from safety_island.cli.progress import prepare_kernels
+from safety_island.cli.run_can import CanSide
+from safety_island.cli.run_report import RunReport
+from safety_island.cli.run_settings import RunSettings, run_settings
+from safety_island.cli.run_start import bring_up, thread_stacks
+from safety_island.cli.stopping import StopAtOnce
+from safety_island.control.follower import TrajectoryFollower
+from safety_island.control.params import Parameters
+from safety_island.control.records import Records
+from safety_island.node import ControllerNode, open_transport
+from safety_island.node.controller import NAME
+from safety_island.params import notes
+from safety_island.platform import Platform, load
+
+
+class Run(NamedTuple):
+    """What a run is made of."""
+
+    platform: Platform
+    settings: RunSettings
+    parameters: Parameters
+    arguments: argparse.Namespace
+
+
+def run(arguments: argparse.Namespace, start: StopAtOnce) -> None:
+    """Start in order and run until told to stop. Raises IslandError when the start fails."""
+    settings = run_settings(arguments, run_configuration(resolved(arguments)))
+    parameters = read_parameters(arguments.params, arguments.period).parameters
+    with thread_stacks(settings.thread_stack_size), ExitStack() as stack:
+        platform = load(arguments.platform, settings.log)
+        stack.callback(platform.logger.close)
+        _start(Run(platform, settings, parameters, arguments), start, stack)
+
+
+def _start(run: Run, start: StopAtOnce, stack: ExitStack) -> None:
+    platform, settings, parameters, _ = run
+    for note in notes(parameters):
+        platform.logger.info("%s", note)
+    dds = bring_up(platform, settings)
+    can = CanSide(platform, settings, parameters.node.ctrl_period)
+    stack.callback(can.close)
+    # Discovery goes on while the kernels are loaded.
+    transport = open_transport(platform, settings.domain_id, dds, NAME)
+    stack.callback(transport.close)
+    prepare_kernels()
+    follower = TrajectoryFollower(parameters)
+    node = ControllerNode(platform, transport, follower, parameters.node, outputs=())
+    node.outputs = can.outputs(node)
+    _drive(run, node, follower.trace, can, start)
+
+
+def _drive(run: Run, node: ControllerNode, trace: Records, can: CanSide, start: StopAtOnce) -> None:
+    """Tick until told to stop, then close the node and tell how it went."""
+    platform, settings, parameters, arguments = run
+    lines = JsonLines(patient=platform.name == "sim") if arguments.json else None
+    side = can if settings.mode.uses_can else None
+    report = RunReport(node, trace, seconds_since_start, lines, side)
+    node.observers.append(report)
+    vehicle = None
+    if platform.name == "sim":
+        from safety_island.cli.virtual import VirtualVehicle
+
+        vehicle = VirtualVehicle(platform, node.transport, node.stop)
+    with node, platform.on_stop(node.stop):
+        start.disarm()
+        node.run(parameters.node.ctrl_period, arguments.duration or None)
+        report.finish()
+        if vehicle is not None:
+            vehicle.finish(lines)
+        node.close()
