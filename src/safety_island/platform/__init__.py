@@ -1,7 +1,7 @@
 """The machine below the island: clock, timer, logger, network and CAN device, with backends.
 
 A backend is a row in ``BACKENDS`` and a folder with the same file names; it is imported when it is
-chosen. Imports: the standard library only.
+chosen. Imports: the standard library, and pyroute2 where an interface is configured.
 """
 
 from __future__ import annotations

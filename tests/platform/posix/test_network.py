@@ -10,6 +10,7 @@ import sys
 import pytest
 
 from safety_island.platform import load
+from tests.platform.posix.namespace import ISOLATED, may_isolate
 
 LATE = """
 import subprocess, threading
@@ -26,16 +27,6 @@ subprocess.run(["ip", "address", "flush", "dev", "lo"], check=True)
 assert network.describe("lo") == "it is up and has no IPv4 address"
 print("as expected")
 """
-
-ISOLATED = ["unshare", "--net", "--map-root-user"]
-
-
-def may_isolate() -> bool:
-    """Whether this machine lets the test have a network namespace."""
-    try:
-        return subprocess.run([*ISOLATED, "true"], capture_output=True).returncode == 0
-    except FileNotFoundError:
-        return False
 
 
 @pytest.mark.skipif(not may_isolate(), reason="no network namespaces on this machine")

@@ -11,8 +11,8 @@ from ipaddress import IPv4Address, IPv4Interface
 from typing import Any
 
 from safety_island.platform.interfaces import NetworkError
+from safety_island.platform.posix.network import LONGEST_NAME
 
-LONGEST_NAME = 15
 _AF_INET = 2
 _MAIN_TABLE = 254
 
@@ -52,6 +52,8 @@ def _reason(error: Any) -> str:
     number = getattr(error, "code", None) or error.errno or 0
     if number in (errno.EPERM, errno.EACCES):
         return "it needs the right CAP_NET_ADMIN; run as root, or configure it by other means"
+    if number == errno.EOPNOTSUPP:
+        return "the kernel of this machine has no such thing (for a VLAN: module 8021q)"
     return os.strerror(abs(number))
 
 
