@@ -134,7 +134,7 @@ def _command_angle(params, inputs, lat, qp, trace, solved, now):
 def _finish(params, points, inputs, lat, qp, command, trace, now, status):
     """Turn the solution, or its failure, into the lateral command."""
     solved = status == _SOLVED
-    tell_solver(qp, trace, status)
+    tell_solver(params, qp, trace, status)
     angle, rate = _command_angle(params, inputs, lat, qp, trace, solved, now)
     trace.stopped = _is_stopped(params, points, inputs, lat)
     trace.is_steer_converged = False

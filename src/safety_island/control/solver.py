@@ -40,13 +40,14 @@ def solve(params, qp):
 
 
 @kernel
-def tell_solver(qp, trace, status):
+def tell_solver(params, qp, trace, status):
     """Write how the solver ended into the trace."""
     trace.solver_status = status
     trace.solver_iterations = qp.qp_iterations
     trace.active_constraints = qp.qp_active_count
     trace.residual = qp.qp_residual
-    trace.rate_limited = _touches_rate(qp)
+    keeps_limits = status == _SOLVED and params.qp_solver_type != _UNCONSTRAINT_FAST
+    trace.rate_limited = keeps_limits and _touches_rate(qp)
 
 
 @kernel
