@@ -72,6 +72,16 @@ def test_domains_in_use_are_told(domain_pair: tuple[int, int]) -> None:
     assert f"DDS domain {first} or {second} is in use on this machine" in process.stderr
 
 
+def test_kernels_are_compiled_before_anything_starts(tmp_path: Path) -> None:
+    environment = os.environ | {"SAFETY_ISLAND_CACHE": str(tmp_path)}
+    with subprocess.Popen(
+        DEMO, stderr=subprocess.PIPE, text=True, env=environment, start_new_session=True
+    ) as process:
+        assert process.stderr is not None
+        assert process.stderr.readline().startswith("island: compiling the control kernels")
+        os.killpg(process.pid, signal.SIGKILL)
+
+
 def children_of(pid: int) -> dict[str, int]:
     """Process ids of the children of a process, by their command."""
     listed = Path(f"/proc/{pid}/task/{pid}/children").read_text().split()

@@ -7,7 +7,6 @@ import json
 import math
 import signal
 import sys
-from contextlib import suppress
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -131,13 +130,12 @@ def _summary(found: list[Condition], state: DemoState) -> dict[str, object]:
 
 def _prepare() -> None:
     """Compile ahead of the processes, so that all can see what is going on."""
+    import safety_island.control.follower  # noqa: F401  (defines every entry)
     from safety_island.cli.progress import prepare_kernels
     from safety_island.control import kernel
 
-    with suppress(ImportError):
-        if kernel.is_cached():
-            return
-    prepare_kernels()
+    if not kernel.is_cached():
+        prepare_kernels()
 
 
 def _in_use(domains: list[int] | None) -> str:
