@@ -10,7 +10,11 @@ _HISTORY_SECONDS = 1.0
 
 @kernel
 def remember_end(params, lat, x, y, stamp):
-    """Remember the end point of an accepted trajectory and forget those of too long ago."""
+    """Remember the end point of an accepted trajectory and forget those of too long ago.
+
+    One from the future goes as well: the planner's clock was set back, or one stamp was wrong, and
+    waiting until that time has come would hold the shape as changed.
+    """
     n = lat.ends_n
     if n == MAX_SHAPE_HISTORY:
         _forget_ends(lat, 1)
@@ -20,7 +24,7 @@ def remember_end(params, lat, x, y, stamp):
     lat.ends_t[n] = stamp
     lat.ends_n = n + 1
     old = 0
-    while old < n and stamp - lat.ends_t[old] >= params.new_traj_duration_time:
+    while old < n and not 0.0 <= stamp - lat.ends_t[old] < params.new_traj_duration_time:
         old += 1
     if old > 0:
         _forget_ends(lat, old)

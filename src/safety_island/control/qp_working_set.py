@@ -39,7 +39,10 @@ def guess(q, n):
 
 @kernel
 def append(q, n, k, constraint, side):
-    """Put a constraint behind the k of the working set; return whether it is independent."""
+    """Put a constraint behind the k of the working set; return whether it is independent.
+
+    Beside n rows none is, whatever rounding leaves of it: the set has room for one dependent row.
+    """
     i = constraint % MAX_HORIZON
     is_rate = constraint >= MAX_HORIZON
     low = q.lbA[i] if is_rate else q.lb[i]
@@ -62,7 +65,7 @@ def append(q, n, k, constraint, side):
     q.qp_start[k] = start
     q.qp_multiplier[k] = 0.0
     forward(q, k, k + 1)
-    return q.qp_D[k] > DEPENDENT * length
+    return k < n and q.qp_D[k] > DEPENDENT * length
 
 
 @kernel

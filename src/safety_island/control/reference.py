@@ -23,6 +23,9 @@ _YAW_KNOTS = 48
 """Knots beyond the one asked for that a spline's value depends on in double precision: the
 influence of a knot falls to a half or less with each step, so 2**-48 is left."""
 
+_YAW_LENGTH = 3.0
+"""The yaw is asked for at the first two stations, which lie within two steps of 1 m at most [m]."""
+
 
 @kernel
 def accept_source(points, n, lat):
@@ -48,7 +51,7 @@ def accept_source(points, n, lat):
 def _fit_yaw(points, n, lat):
     """Fit the yaw spline as far as the start of the path depends on it."""
     count = min(n, _YAW_KNOTS)
-    while count < n and lat.arc[count - 1] < 1.0:
+    while count < n and lat.arc[count - 1] < _YAW_LENGTH:
         count += 1
     previous = 0.0
     for i in range(count):
