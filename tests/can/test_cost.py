@@ -42,4 +42,5 @@ def test_encode_and_send_on_the_mock_cost_a_tenth_of_a_yardstick() -> None:
             output.send(command, stamp.nanoseconds)
         sends.append((time.perf_counter_ns() - begun_ns) / 1e3 / SENDS)
         yards.append(measure_us(yardstick))
-    assert output.counters.sent == SENDS * len(sends)
+    # one that lost the processor for longer than its budget is counted as failed, not as sent
+    assert output.counters.sent + output.failed == SENDS * len(sends)

@@ -22,18 +22,25 @@ def prepare_kernels(on_demand: bool = False) -> None:
     compiled code is quick and leaves nothing on the screen. ``on_demand``: also those that only
     some uses need.
     """
+    if missing := _missing(on_demand):
+        started = perf_counter()
+        with _display() as show:
+            _compile(missing, show)
+        _say(f"control kernels compiled in {perf_counter() - started:.0f} s")
+    from safety_island.control import kernel
+
+    kernel.prepare()
+
+
+def _missing(on_demand: bool) -> list[str]:
+    """Name the island's kernels of which no compiled code is on disk."""
     import safety_island.control.follower
     import safety_island.control.qp_alone  # noqa: F401  (these two define every entry)
     from safety_island.control import kernel
 
     wanted = kernel.ENTRIES + (kernel.ON_DEMAND if on_demand else [])
-    missing = [item.name for item in wanted if kernel.JIT and not item.is_on_disk()]
-    if missing:
-        started = perf_counter()
-        with _display() as show:
-            _compile(missing, show)
-        _say(f"control kernels compiled in {perf_counter() - started:.0f} s")
-    kernel.prepare()
+    own = [item for item in wanted if item.python.__module__.startswith("safety_island.")]
+    return [item.name for item in own if kernel.JIT and not item.is_on_disk()]
 
 
 def _compile(names: list[str], show: Report) -> None:
