@@ -48,9 +48,23 @@ def chrony(folder: Path, *extra: str) -> Iterator[str]:
                     break
             else:
                 pytest.fail(f"chrony ended: {said}")
+            wait_until_taken(port)
             yield f"127.0.0.1:{port}"
         finally:
             process.terminate()
+
+
+def wait_until_taken(port: int) -> None:
+    """Wait until a server holds a UDP port; chrony opens it some time after its first lines."""
+    limit = time.monotonic() + 30
+    while time.monotonic() < limit:
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+            try:
+                probe.bind(("127.0.0.1", port))
+            except OSError:
+                return
+        time.sleep(0.01)
+    pytest.fail(f"nobody opened UDP port {port}")
 
 
 @contextmanager
