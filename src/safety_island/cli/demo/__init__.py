@@ -19,6 +19,7 @@ from safety_island.cli.demo.show import PlainShow, TerminalShow
 from safety_island.cli.domains import pairs_from, reserve
 from safety_island.cli.parameters import read_parameters
 from safety_island.cli.parser import UsageError, teach
+from safety_island.cli.run_settings import HOSTED
 from safety_island.errors import IslandError
 from safety_island.sim.courses import COURSES, DEFAULT_COURSE, load_course
 
@@ -41,6 +42,7 @@ planner said, and no tick was missed.
 """,
         ("island demo", "the s-curve, about a minute"),
         ("island demo --course u-turn --period 0.03", "another course, at Autoware's own period"),
+        ("island demo --target freertos_posix", "with CAN output: frames beside the commands"),
         ("island demo --duration 0", "lap after lap, until Ctrl-C"),
         ("island demo --plain", "plain lines, as when the output is no terminal"),
     )
@@ -49,6 +51,14 @@ planner said, and no tick was missed.
         choices=tuple(COURSES),
         default=DEFAULT_COURSE,
         help=f"what to drive (default: {DEFAULT_COURSE})",
+    )
+    parser.add_argument(
+        "-t",
+        "--target",
+        choices=HOSTED,
+        default="posix",
+        help="what the island is started as; freertos_posix sends CAN frames too, into memory "
+        "(default: posix)",
     )
     options.add_period(parser)
     options.add_params(parser)

@@ -23,6 +23,7 @@ def make_children(
     config = folder / "bridge-config.yaml"
     config.write_text(bridge_file(domains), "utf-8")
     run = ["run", "--domain", island, "--params", *arguments.params, *LOOPBACK, "--json"]
+    run += ["--target", arguments.target]
     if arguments.period is not None:
         run += ["--period", repr(arguments.period)]
     drive = ["main-compute", "--domain", main, "--course", arguments.course, *LOOPBACK, "--json"]

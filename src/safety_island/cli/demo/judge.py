@@ -26,7 +26,9 @@ def conditions(state: DemoState) -> list[Condition]:
     vehicle = state.vehicle_summary
     if not vehicle:
         return [Condition("drive", False, "the main compute gave no summary")]
-    return [_lateral(vehicle), _speed(vehicle), _stops(vehicle), _ticks(state.island_summary)]
+    found = [_lateral(vehicle), _speed(vehicle), _stops(vehicle), _ticks(state.island_summary)]
+    can = state.island_summary.get("can")
+    return [*found, _frames(can)] if can else found
 
 
 def _lateral(vehicle: Event) -> Condition:
@@ -66,3 +68,9 @@ def _ticks(island: Event) -> Condition:
         worst_s = island["tick_s"]["max"]
         text += f"; one takes {median_s * 1e3:.2f} ms at the median, {worst_s * 1e3:.2f} ms at most"
     return Condition("no_missed_ticks", missed == 0 and ticks > 0, text)
+
+
+def _frames(can: Event) -> Condition:
+    lost = int(can["failed"]) + int(can["rejected"])
+    text = f"{can['sent']} commands went out as three CAN frames, {lost or 'none'} did not"
+    return Condition("can_frames", lost == 0 and int(can["sent"]) > 0, text)

@@ -35,13 +35,38 @@ def waiting_for(state: DemoState) -> str:
     return "the vehicle to take commands"
 
 
+def command(state: DemoState) -> str:
+    """Return the newest command; nothing when there is none."""
+    if "steering_tire_angle" not in state.tick:
+        return ""
+    angle, acceleration = state.tick["steering_tire_angle"], state.tick["acceleration"]
+    return f"{angle:+.3f} rad, {acceleration:+.2f} m/s²"
+
+
+def can_command(state: DemoState) -> str:
+    """Return the command that the newest CAN frames carry, decoded; nothing without frames."""
+    can = state.tick.get("can") or {}
+    if "steering_tire_angle" not in can:
+        return str(can.get("fault", ""))
+    angle, acceleration = can["steering_tire_angle"]["value"], can["acceleration"]["value"]
+    return f"{angle:+.6f} rad, {acceleration:+.3f} m/s²"
+
+
+def can_number(state: DemoState) -> str:
+    """Return the sequence number of the newest CAN frames; nothing without frames."""
+    number = (state.tick.get("can") or {}).get("sequence")
+    return "" if number is None else f"#{number}"
+
+
 def plain_line(state: DemoState) -> str:
     """Return one line about a vehicle that drives."""
     vehicle = state.vehicle
+    frames = can_command(state)
+    beside = f"  command {command(state)}  CAN {can_number(state)} {frames}" if frames else ""
     return (
         f"{vehicle['time_s']:6.1f} s  {vehicle['station']:6.1f} of {vehicle['length']:.0f} m"
         f"  {vehicle['speed']:5.2f} of {vehicle['target_speed']:5.2f} m/s"
         f"  lateral {vehicle['lateral_error']:+.3f} m  {controller(state)}"
         f"  tick {milliseconds(state.tick.get('tick_s'))}"
-        f"  oldest input {milliseconds(state.oldest_input_s)}"
+        f"  oldest input {milliseconds(state.oldest_input_s)}{beside}"
     )

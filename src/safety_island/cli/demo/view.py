@@ -10,7 +10,14 @@ from rich.text import Text
 
 from safety_island.cli.demo.canvas import CourseMap
 from safety_island.cli.demo.events import DemoState
-from safety_island.cli.demo.text import controller, milliseconds, waiting_for
+from safety_island.cli.demo.text import (
+    can_command,
+    can_number,
+    command,
+    controller,
+    milliseconds,
+    waiting_for,
+)
 from safety_island.sim.courses import Course
 from safety_island.sim.metrics import MAX_LATERAL_ERROR
 
@@ -68,7 +75,9 @@ def _figures(state: DemoState) -> Table:
         table.add_row("speed", _bar(speed, max(target, speed)), f"{speed:.2f} of {target:.2f} m/s")
         error = float(vehicle["lateral_error"])
         table.add_row("lateral", _offset(error), f"{error:+.3f} m")
-    table.add_row("controller", _bold(controller(state)), _command(state))
+    table.add_row("controller", _bold(controller(state)), command(state))
+    if frames := can_command(state):
+        table.add_row("CAN frames", Text(frames), can_number(state))
     late = milliseconds(state.tick.get("lateness_s"))
     table.add_row("tick", milliseconds(state.tick.get("tick_s")), f"woken {late} late")
     table.add_row("input ages", _ages(state), "")
@@ -95,13 +104,6 @@ def _offset(error: float) -> Text:
 
 def _bold(text: str) -> Text:
     return Text(text, style="bold green" if text in ("DRIVE", "STOPPING", "STOPPED") else "yellow")
-
-
-def _command(state: DemoState) -> str:
-    if "steering_tire_angle" not in state.tick:
-        return ""
-    angle, acceleration = state.tick["steering_tire_angle"], state.tick["acceleration"]
-    return f"{angle:+.3f} rad, {acceleration:+.2f} m/s²"
 
 
 def _ages(state: DemoState) -> str:
