@@ -68,8 +68,13 @@ def test_the_usual_handler_of_interrupts_is_back_when_the_command_runs(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     seen: list[object] = []
+
+    def look() -> int:
+        seen.append(signal.getsignal(signal.SIGINT))
+        return 0
+
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
-    monkeypatch.setattr(frame, "main", lambda: seen.append(signal.getsignal(signal.SIGINT)) or 0)
+    monkeypatch.setattr(frame, "main", look)
     try:
         assert module.start() == 0
     finally:
