@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 import threading
 import time
 from ipaddress import IPv4Interface
+from pathlib import Path
 
 import pytest
 
@@ -17,7 +20,7 @@ from safety_island.platform import LogConfig, load
 from safety_island.platform.sim import SimPlatform
 from safety_island.platform.sim import make as make_sim
 from tests.cli.test_run_settings import settings
-from tests.platform.posix.test_sntp import reply, server
+from tests.platform.posix.test_sntp import CHRONYD, chrony, reply, server
 
 
 def virtual(**changes: object) -> tuple[SimPlatform, RunSettings]:
@@ -81,3 +84,28 @@ def test_sntp_moves_the_stamps_and_no_timer() -> None:
     assert tick.skipped < 1000
     timer.close()
     platform.logger.close()
+
+
+@pytest.mark.live
+def test_a_stop_ends_the_wait_for_an_address(domain_id: int) -> None:
+    words = ["--domain", str(domain_id), "--interface", "nowhere0"]
+    words += ["-D", "NET_DHCPV4_INITIAL_DELAY_MAX=3600"]
+    command = [sys.executable, "-m", "safety_island", "run", *words]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stderr is not None
+        next(line for line in process.stderr if "waiting at most 3600 s" in line)
+        process.terminate()
+        assert process.wait(60) == 0
+
+
+@pytest.mark.live
+@pytest.mark.skipif(CHRONYD is None, reason="chrony is not installed")
+def test_the_island_takes_its_time_from_chrony(domain_id: int, tmp_path: Path) -> None:
+    with chrony(tmp_path, "local stratum 8") as name:
+        words = ["--domain", str(domain_id), "--duration", "0.3"]
+        words += ["-D", "ENABLE_SNTP=y", "-D", f"SNTP_SERVER={name}"]
+        command = [sys.executable, "-m", "safety_island", "run", *words]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=110)
+    assert done.returncode == 0, done.stderr
+    assert f"wall clock set by SNTP server '{name}' (stratum 8)" in done.stderr
+    assert "safety_island is live" in done.stderr
