@@ -115,6 +115,20 @@ def test_the_memory_is_bounded_whatever_the_clock_does() -> None:
     assert math.isfinite(predict_steering(lat, 900.0, TAU))
 
 
+@pytest.mark.parametrize("back", [1e-3, 3600.0, 1e9])
+def test_a_clock_that_is_set_back_stops_the_prediction_for_a_while(back: float) -> None:
+    lat = state()
+    for i in range(5):
+        predict_steering(lat, 1000.0 + 0.15 * i, TAU)
+        store_command(lat, np.float32(0.5), 1000.0 + 0.15 * i, 0.0)
+    before = predict_steering(lat, 1000.75, TAU)
+    assert predict_steering(lat, 1000.75 - back, TAU) == before
+    for i in range(300):
+        predict_steering(lat, 1000.75 - back + 0.15 * i, TAU)
+        store_command(lat, np.float32(0.5), 1000.75 - back + 0.15 * i, 0.0)
+    assert 0.0 < lat.predicted < 2.0
+
+
 def test_the_prediction_is_the_initial_state_where_that_is_wanted() -> None:
     """It converges to the command, whatever the sensor says."""
     for wanted in (False, True):

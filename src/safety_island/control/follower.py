@@ -146,8 +146,8 @@ class TrajectoryFollower:
             return _refusal_of(total)
         square = qx * qx + qy * qy + qz * qz + qw * qw
         if not (MIN_SQUARE_NORM <= square <= MAX_SQUARE_NORM and math.isfinite(total)):
-            refused = math.isfinite(total + square)
-            return Refusal.BAD_QUATERNION if refused else Refusal.NOT_FINITE
+            finite = math.isfinite(total + qx + qy + qz + qw)
+            return Refusal.BAD_QUATERNION if finite else Refusal.NOT_FINITE
         self._pose[:] = (x, y, z, qx, qy, qz, qw, vx, vy, wz)
         self._missing.discard("odometry")
         return Refusal.ACCEPTED

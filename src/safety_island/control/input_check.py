@@ -54,7 +54,8 @@ def _check_point(point):
     square += point.qz * point.qz + point.qw * point.qw
     if MIN_SQUARE_NORM <= square <= MAX_SQUARE_NORM:
         return _ACCEPTED
-    return _BAD_QUATERNION if math.isfinite(square) else _NOT_FINITE
+    parts = point.qx + point.qy + point.qz + point.qw
+    return _BAD_QUATERNION if math.isfinite(parts) else _NOT_FINITE
 
 
 @kernel

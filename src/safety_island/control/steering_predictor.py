@@ -31,11 +31,14 @@ def _response_to_commands(lat, start, end, tau):
 
 @kernel
 def predict_steering(lat, now, tau):
-    """Advance the predicted tyre angle [rad] to ``now`` and return it."""
+    """Advance the predicted tyre angle [rad] to ``now`` and return it.
+
+    Nothing passes while ``now`` lies before the last call: undoing the lag would grow without end.
+    """
     if not lat.predictor_started:
         lat.predictor_started = True
         lat.predictor_time = now
-    start = lat.predictor_time
+    start = min(lat.predictor_time, now)
     lat.predictor_time = now
     response = _response_to_commands(lat, start, now, tau)
     lat.predicted = math.exp(-(now - start) / tau) * lat.predicted + response
