@@ -57,10 +57,17 @@ def test_threads_get_the_stack_that_is_configured() -> None:
 
 
 def test_no_address_ends_the_start(capsys: pytest.CaptureFixture[str], domain_id: int) -> None:
-    words = ["run", "--domain", str(domain_id), "--interface", "nowhere0"]
+    words = ["run", "--domain", str(domain_id), "-D", "DDS_NETWORK_INTERFACE=nowhere0"]
     assert main([*words, "-D", "NET_DHCPV4_INITIAL_DELAY_MAX=0"]) == 1
     (error,) = [line for line in capsys.readouterr().err.splitlines() if "island: error" in line]
     assert "interface 'nowhere0' has no IPv4 address after 0 s (there is no such interface" in error
+
+
+def test_an_interface_named_by_hand_must_be_there(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", "--interface", "l0"]) == 2
+    error = capsys.readouterr().err
+    assert "network interface 'l0' does not exist; this machine has lo" in error
+    assert "did you mean lo?" in error
 
 
 def test_a_lying_time_server_ends_the_start(
@@ -88,7 +95,7 @@ def test_sntp_moves_the_stamps_and_no_timer() -> None:
 
 @pytest.mark.live
 def test_a_stop_ends_the_wait_for_an_address(domain_id: int) -> None:
-    words = ["--domain", str(domain_id), "--interface", "nowhere0"]
+    words = ["--domain", str(domain_id), "-D", "DDS_NETWORK_INTERFACE=nowhere0"]
     words += ["-D", "NET_DHCPV4_INITIAL_DELAY_MAX=3600"]
     command = [sys.executable, "-m", "safety_island", "run", *words]
     with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:

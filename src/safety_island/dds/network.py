@@ -17,8 +17,8 @@ def interfaces() -> list[str]:
     return [name for _, name in socket.if_nameindex()]
 
 
-def check_interface(name: str) -> None:
-    """Raise ConfigurationError unless the interface exists and is up."""
+def check_exists(name: str) -> None:
+    """Raise ConfigurationError unless the interface exists."""
     found = interfaces()
     if name not in found:
         near = get_close_matches(name, found, n=1)
@@ -27,6 +27,11 @@ def check_interface(name: str) -> None:
             f"network interface {name!r} does not exist; this machine has"
             f" {', '.join(found)}{hint}. Choose one with --interface or in the configuration"
         )
+
+
+def check_interface(name: str) -> None:
+    """Raise ConfigurationError unless the interface exists and is up."""
+    check_exists(name)
     if not _is_up(name):
         raise ConfigurationError(f"network interface {name!r} is down; run: ip link set {name} up")
 
