@@ -64,9 +64,9 @@ def test_no_address_ends_the_start(capsys: pytest.CaptureFixture[str], domain_id
 
 
 def test_an_interface_named_by_hand_must_be_there(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["run", "--interface", "l0"]) == 2
+    assert main(["run", "--interface", "lo0"]) == 2
     error = capsys.readouterr().err
-    assert "network interface 'l0' does not exist; this machine has lo" in error
+    assert "network interface 'lo0' does not exist; this machine has lo" in error
     assert "did you mean lo?" in error
 
 
