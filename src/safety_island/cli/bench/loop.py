@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from safety_island.cli import options
 from safety_island.cli.demo.child import Child
-from safety_island.cli.demo.children import make_children
+from safety_island.cli.demo.children import bridge_child, island_child
 from safety_island.cli.domains import pairs_from, reserve
 from safety_island.cli.progress import prepare_kernels, tick_progress
 from safety_island.errors import IslandError
@@ -57,9 +57,11 @@ def _measure(arguments: argparse.Namespace, domains: tuple[int, int]) -> LoopTim
     from safety_island.bench.loop import measure
     from safety_island.dds.config import DdsConfig
 
-    arguments.course = ""  # the vehicle is ours, not the demo's
     with TemporaryDirectory() as folder:
-        children = make_children(arguments, domains, Path(folder))[:2]
+        children = [
+            island_child(domains[1], arguments.params, arguments.period),
+            bridge_child(domains, Path(folder)),
+        ]
         expected = round(arguments.duration / (arguments.period or 0.15))
         try:
             for child in children:

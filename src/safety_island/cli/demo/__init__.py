@@ -11,7 +11,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from safety_island.cli import options
-from safety_island.cli.demo.children import make_children
+from safety_island.cli.demo.children import bridge_child, island_child, vehicle_child
 from safety_island.cli.demo.events import DemoState
 from safety_island.cli.demo.judge import Condition, conditions
 from safety_island.cli.demo.session import Session
@@ -94,7 +94,12 @@ def execute(arguments: argparse.Namespace) -> int:
 def _run(arguments: argparse.Namespace, domains: tuple[int, int]) -> int:
     interrupted = False
     with TemporaryDirectory() as folder, _display(arguments, domains) as show:
-        children = make_children(arguments, domains, Path(folder))
+        main, island = domains
+        children = [
+            island_child(island, arguments.params, arguments.period, arguments.target),
+            bridge_child(domains, Path(folder)),
+            vehicle_child(main, arguments.course, arguments.duration),
+        ]
         limit_s = arguments.duration + GRACE_S if arguments.duration else math.inf
         session = Session(children, show, limit_s)
         try:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import argparse
+from collections.abc import Sequence
 from pathlib import Path
 
 from safety_island.cli.demo.child import Child
@@ -12,27 +12,28 @@ from safety_island.dds.topics import BRIDGED, MAIN_COMPUTE_DOMAIN
 LOOPBACK = ("--interface", "lo")
 
 
-def make_children(
-    arguments: argparse.Namespace, domains: tuple[int, int], folder: Path
-) -> list[Child]:
-    """Return the processes, not started; the bridge's file is written to ``folder``.
+def island_child(
+    domain: int, params: Sequence[str], period_s: float | None, target: str = "posix"
+) -> Child:
+    """Return the safety island, not started."""
+    run = ["run", "--domain", str(domain), "--target", target, "--params", *params]
+    if period_s is not None:
+        run += ["--period", repr(period_s)]
+    return Child(ISLAND, [*run, *LOOPBACK, "--json"])
 
-    ``domains``: of the main compute, of the island.
-    """
-    main, island = (str(domain) for domain in domains)
+
+def bridge_child(domains: tuple[int, int], folder: Path) -> Child:
+    """Return the bridge between main compute and island; its file is written to ``folder``."""
     config = folder / "bridge-config.yaml"
     config.write_text(bridge_file(domains), "utf-8")
-    run = ["run", "--domain", island, "--params", *arguments.params, *LOOPBACK, "--json"]
-    run += ["--target", arguments.target]
-    if arguments.period is not None:
-        run += ["--period", repr(arguments.period)]
-    drive = ["main-compute", "--domain", main, "--course", arguments.course, *LOOPBACK, "--json"]
-    drive += ["--within", repr(arguments.duration)] if arguments.duration else ["--repeat"]
-    return [
-        Child(ISLAND, run),
-        Child(BRIDGE, ["bridge", str(config), *LOOPBACK, "--json"]),
-        Child(VEHICLE, drive),
-    ]
+    return Child(BRIDGE, ["bridge", str(config), *LOOPBACK, "--json"])
+
+
+def vehicle_child(domain: int, course: str, time_s: float) -> Child:
+    """Return the main compute; it drives about ``time_s`` [s], for 0 lap after lap."""
+    drive = ["main-compute", "--domain", str(domain), "--course", course]
+    drive += ["--within", repr(time_s)] if time_s else ["--repeat"]
+    return Child(VEHICLE, [*drive, *LOOPBACK, "--json"])
 
 
 def bridge_file(domains: tuple[int, int]) -> str:
