@@ -42,6 +42,15 @@ def test_no_stop_was_made() -> None:
     assert (holds, text) == (False, "no stop was reached in this time")
 
 
+def test_demo_that_a_person_ended_needs_no_stop() -> None:
+    nothing = VEHICLE_SUMMARY | {"stop_errors": [], "stopped_in_place": False}
+    state = DemoState(vehicle_summary=nothing, island_summary=ISLAND_SUMMARY)
+    assert all(condition.holds for condition in conditions(state, cut_short=True))
+    bad = nothing | {"stop_errors": [0.9]}
+    state = DemoState(vehicle_summary=bad, island_summary=ISLAND_SUMMARY)
+    assert not all(condition.holds for condition in conditions(state, cut_short=True))
+
+
 def test_ticks_were_missed() -> None:
     holds, text = judge(island={"missed_ticks": 2})["no_missed_ticks"]
     assert not holds

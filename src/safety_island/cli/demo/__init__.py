@@ -106,7 +106,7 @@ def _run(arguments: argparse.Namespace, domains: tuple[int, int]) -> int:
             session.run()
         except KeyboardInterrupt:
             interrupted = True
-    found = conditions(session.state)
+    found = conditions(session.state, interrupted)
     _tell(found, session.state, arguments.json)
     if interrupted and arguments.duration:
         return 128 + signal.SIGINT

@@ -21,12 +21,20 @@ class Condition(NamedTuple):
     text: str
 
 
-def conditions(state: DemoState) -> list[Condition]:
-    """Judge a demo that has ended by what its processes reported last."""
+def conditions(state: DemoState, cut_short: bool = False) -> list[Condition]:
+    """Judge a demo that has ended by what its processes reported last.
+
+    ``cut_short``: a person ended it, so a stop that was not reached yet is no failure.
+    """
     vehicle = state.vehicle_summary
     if not vehicle:
         return [Condition("drive", False, "the main compute gave no summary")]
-    found = [_lateral(vehicle), _speed(vehicle), _stops(vehicle), _ticks(state.island_summary)]
+    found = [
+        _lateral(vehicle),
+        _speed(vehicle),
+        _stops(vehicle, cut_short),
+        _ticks(state.island_summary),
+    ]
     can = state.island_summary.get("can")
     return [*found, _frames(can)] if can else found
 
@@ -47,14 +55,13 @@ def _speed(vehicle: Event) -> Condition:
     return Condition("reached_speed", bool(vehicle["reached_speed"]), text)
 
 
-def _stops(vehicle: Event) -> Condition:
+def _stops(vehicle: Event, cut_short: bool) -> Condition:
     errors = [abs(error) for error in vehicle["stop_errors"]]
     if not errors:
-        text = "no stop was reached in this time"
-    else:
-        times = "once" if len(errors) == 1 else f"{len(errors)} times"
-        text = f"stopped {times}, at most {max(errors):.2f} m from the place"
-        text += f" (limit {MAX_STOP_ERROR} m)"
+        return Condition("stopped_in_place", cut_short, "no stop was reached in this time")
+    times = "once" if len(errors) == 1 else f"{len(errors)} times"
+    text = f"stopped {times}, at most {max(errors):.2f} m from the place"
+    text += f" (limit {MAX_STOP_ERROR} m)"
     return Condition("stopped_in_place", bool(vehicle["stopped_in_place"]), text)
 
 
