@@ -1,0 +1,173 @@
+"""How kernels are compiled: fixed types, no memory of their own, plain Python on request."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from safety_island.control import kernel
+from safety_island.control.follower import TrajectoryFollower
+from safety_island.control.input_check import check_trajectory
+from safety_island.control.records import (
+    INPUTS,
+    PARAMS,
+    POINT,
+    Records,
+    new_points,
+    pack_parameters,
+)
+from safety_island.control.status import Refusal
+from tests.control.lateral_rig import line
+from tests.golden.harness import firmware
+
+SOURCES = Path(kernel.__file__).parents[2]
+needs_jit = pytest.mark.skipif(not kernel.JIT, reason="kernels are not compiled in this process")
+
+
+def good() -> list[Any]:
+    points = new_points()
+    points[:21] = line(20.0)
+    return [pack_parameters(firmware()), points, 21]
+
+
+def frozen(values: Records) -> Records:
+    values = values.copy()
+    values.flags.writeable = False
+    return values
+
+
+def test_an_entry_takes_what_it_was_declared_with() -> None:
+    check_trajectory.prepare()
+    assert check_trajectory.call(*good()) == Refusal.ACCEPTED
+    assert check_trajectory.arguments == (PARAMS, POINT, int)
+
+
+@needs_jit
+@pytest.mark.parametrize(
+    ("index", "argument"),
+    [
+        (0, np.zeros(1, INPUTS)),
+        (0, np.zeros((1, 1), PARAMS)),
+        (1, frozen(new_points())),
+        (1, new_points()[::2]),
+        (1, np.zeros((9, 11))),
+        (1, None),
+        (2, "21"),
+        (2, np.arange(3)),
+    ],
+    ids=["record", "shape", "read-only", "strided", "numbers", "none", "text", "array"],
+)
+def test_any_other_type_is_a_type_error_and_no_compilation(index: int, argument: Any) -> None:
+    check_trajectory.prepare()
+    arguments = good()
+    arguments[index] = argument
+    dispatcher: Any = check_trajectory.call
+    before = dispatcher.signatures[:]
+    with pytest.raises(TypeError):
+        check_trajectory.call(*arguments)
+    assert dispatcher.signatures == before and len(before) == 1
+
+
+@needs_jit
+def test_a_number_is_converted_and_not_compiled_for() -> None:
+    """Numba converts an int to the float that was declared."""
+    follower = TrajectoryFollower(firmware())
+    follower.offer_trajectory(line(20.0), 1000)
+    follower.offer_odometry(0, 0, 0, 0, 0, 0, 1, 1, 0, 0)
+    follower.offer_steering(0)
+    follower.offer_acceleration(0)
+    follower.offer_operation_mode(2, True)
+    assert follower.step(1000)
+    assert [len(item.call.signatures) for item in prepared()] == [1] * len(prepared())
+
+
+def prepared() -> list[Any]:
+    return [item for item in kernel.ENTRIES if item.call is not item.python]
+
+
+@needs_jit
+def test_preparing_twice_changes_nothing() -> None:
+    check_trajectory.prepare()
+    before = check_trajectory.call
+    check_trajectory.prepare()
+    assert check_trajectory.call is before
+
+
+@needs_jit
+def test_a_kernel_that_allocates_does_not_compile() -> None:
+    import numba
+
+    @kernel.kernel
+    def sums(n: int) -> float:
+        values = np.zeros(n)
+        values[0] = 1.0
+        return float(values.sum())
+
+    with pytest.raises(numba.errors.NumbaError):
+        sums(3)
+
+
+@needs_jit
+def test_a_kernel_may_look_at_parts_of_what_it_was_given() -> None:
+    @kernel.kernel
+    def middle(values: Any) -> Any:
+        part = values[1:3]
+        part[0] = 7.0
+        return part[1]
+
+    values = np.arange(4.0)
+    assert middle(values) == 2.0 and values[1] == 7.0
+
+
+def test_every_kernel_of_a_tick_is_prepared_in_order_and_told() -> None:
+    told: list[tuple[str, int, int]] = []
+    kernel.prepare(lambda *told_of: told.append(told_of))
+    assert [index for _, index, _ in told] == list(range(len(kernel.ENTRIES)))
+    assert {count for _, _, count in told} == {len(kernel.ENTRIES)}
+    names = [name for name, _, _ in told]
+    assert {"check_trajectory", "lateral_step", "longitudinal_step"} <= set(names)
+    assert not {item.name for item in kernel.ON_DEMAND} & set(names)
+
+
+def python(code: str, **environment: str) -> list[str]:
+    """Run Python on the sources in a process of its own; return the words that it prints."""
+    result = subprocess.run(
+        [sys.executable, "-c", code],
+        env=os.environ | {"PYTHONPATH": str(SOURCES)} | environment,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert result.returncode == 0, result.stderr
+    return result.stdout.split()
+
+
+@needs_jit
+def test_compiled_code_is_found_on_disk(tmp_path: Path) -> None:
+    kernel.prepare()
+    assert kernel.is_cached()
+    code = (
+        "import safety_island.control.follower; from safety_island.control import kernel;"
+        "print(kernel.is_cached())"
+    )
+    assert python(code, SAFETY_ISLAND_CACHE=str(tmp_path)) == ["False"]
+    assert python(code, SAFETY_ISLAND_CACHE=str(kernel.cache_folder().parent)) == ["True"]
+
+
+def test_plain_python_needs_no_compiler() -> None:
+    """``SAFETY_ISLAND_JIT=0``: the same functions, and Numba is not even imported."""
+    code = (
+        "import sys; import safety_island.control.follower as f;"
+        "from safety_island.control import kernel;"
+        "from safety_island.params import load_set;"
+        "f.TrajectoryFollower(load_set('default'));"
+        "print(kernel.JIT, kernel.is_cached(), 'numba' in sys.modules,"
+        "all(e.call is e.python for e in kernel.ENTRIES))"
+    )
+    assert python(code, SAFETY_ISLAND_JIT="0") == ["False", "True", "False", "True"]
