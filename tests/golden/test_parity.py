@@ -13,9 +13,10 @@ import numpy.typing as npt
 import pytest
 
 from safety_island.control.kernel import JIT
+from safety_island.replay.check import Table
 from safety_island.replay.compare import judge
 from safety_island.replay.feed import Replay
-from safety_island.replay.recording import CONTRACT_COLUMNS, Recording, Table, load
+from safety_island.replay.recording import CONTRACT_COLUMNS, Recording, load
 from tests.golden.harness import name_of, recorded, run_paths
 
 Mask = npt.NDArray[np.bool_]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -60,7 +61,7 @@ def execute(arguments: argparse.Namespace) -> int:
             print(_line(verdict), flush=True)
     passed = sum(verdict.passed for _, verdict in verdicts)
     if arguments.json:
-        print(json.dumps(_as_json(verdicts), indent=2))
+        print(json.dumps(_as_json(verdicts), indent=2, allow_nan=False))
     else:
         print(f"{len(verdicts)} runs: {passed} passed, {len(verdicts) - passed} failed")
     return 0 if passed == len(verdicts) else 1
@@ -99,10 +100,18 @@ def _as_json(verdicts: list[tuple[Path, Verdict]]) -> dict[str, Any]:
             "file": str(path),
             "ticks": verdict.ticks,
             "loose_ticks": verdict.loose_ticks,
-            "greatest_difference": verdict.greatest,
-            "first_exceeding": verdict.exceeding and verdict.exceeding._asdict(),
+            "greatest_difference": _as_numbers(verdict.greatest),
+            "first_exceeding": verdict.exceeding and _as_numbers(verdict.exceeding._asdict()),
             "passed": verdict.passed,
         }
         for path, verdict in verdicts
     ]
     return {"runs": runs, "passed": all(run["passed"] for run in runs)}
+
+
+def _as_numbers(values: dict[str, Any]) -> dict[str, Any]:
+    """JSON has no NaN and no infinity: null, as where only one side published."""
+    return {
+        name: None if isinstance(value, float) and not math.isfinite(value) else value
+        for name, value in values.items()
+    }

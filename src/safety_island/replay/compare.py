@@ -13,7 +13,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from safety_island.replay.recording import CONTRACT_COLUMNS, Recording, Table
+from safety_island.replay.check import Table
+from safety_island.replay.recording import CONTRACT_COLUMNS, Recording
 
 COMMAND_COLUMNS = CONTRACT_COLUMNS[2:]
 ANGLE, RATE = COMMAND_COLUMNS[:2]

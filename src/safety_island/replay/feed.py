@@ -17,6 +17,7 @@ from safety_island.node import ControllerNode
 from safety_island.node.memory import MemoryDomain
 from safety_island.platform.interfaces import LogConfig, LogLevel
 from safety_island.platform.sim import make
+from safety_island.replay.check import Table
 from safety_island.replay.recording import (
     ACCELERATION,
     CONTRACT_COLUMNS,
@@ -24,7 +25,6 @@ from safety_island.replay.recording import (
     OPERATION_MODE,
     STEERING,
     Recording,
-    Table,
 )
 
 _STOP = 1
@@ -35,9 +35,12 @@ class Replay:
     """The controller node on virtual time, and publishers that play a recording to it."""
 
     def __init__(self, run: Recording, solver: str | None = None) -> None:
-        """``solver`` replaces the one that the run was recorded with."""
+        """``solver`` replaces the one that the run was recorded with.
+
+        Raises ParameterError for parameters of the run that cannot be used.
+        """
         changes = run.overrides | ({"qp_solver_type": solver} if solver else {})
-        parameters = params.from_mapping(changes, "firmware")
+        parameters = params.read((), "firmware", changes, name=str(run.path)).parameters
         self.run = run
         self.platform = make(LogConfig(level=LogLevel.NONE))
         domain = MemoryDomain(self.platform.clock)

@@ -6,7 +6,9 @@ The files are NumPy archives without pickles; their arrays are described in ``do
 from __future__ import annotations
 
 import json
+import struct
 import zipfile
+import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,8 +20,8 @@ import yaml
 
 from safety_island.control.records import POINT, Records
 from safety_island.errors import IslandError
-
-Table = npt.NDArray[np.float64]
+from safety_island.replay import check
+from safety_island.replay.check import Table
 
 ODOMETRY, STEERING, ACCELERATION, OPERATION_MODE = 1, 2, 4, 8
 """Bits of ``deliver_mask``."""
@@ -42,7 +44,11 @@ _ARRAYS = (
     *("state", "state_cols", "deliver_mask", "path_points", "path_offsets"),
     *("traj_select", "output", "output_cols", "params_json"),
 )
-_POINT_COLUMNS = 13
+_UNREADABLE = (
+    *(OSError, ValueError, EOFError, MemoryError, SyntaxError, RuntimeError, OverflowError),
+    *(zipfile.BadZipFile, zlib.error, struct.error, KeyError),
+)
+"""What reading an archive raises when its bytes are garbled."""
 
 
 class RecordingError(IslandError):
@@ -97,7 +103,7 @@ class Recording:
         begin = self.path_offsets[int(path)]
         rows = self.path_points[begin + int(first) : begin + int(end)]
         points: Records = np.zeros(len(rows), POINT)
-        for i, name in enumerate(POINT.names[:_POINT_COLUMNS]):
+        for i, name in enumerate(POINT.names[: check.POINT_COLUMNS]):
             points[name] = rows[:, i]
         return points
 
@@ -117,7 +123,7 @@ def load(path: Path) -> Recording:
             arrays = {name: data[name] for name in _ARRAYS}
     except FileNotFoundError:
         raise RecordingError(f"{path} does not exist: name a recorded run (.npz)") from None
-    except (OSError, ValueError, EOFError, zipfile.BadZipFile) as error:
+    except _UNREADABLE as error:
         raise RecordingError(f"{path} cannot be read as a recorded run: {error}") from None
     return _checked(path, arrays)
 
@@ -126,37 +132,36 @@ def _checked(path: Path, arrays: dict[str, npt.NDArray[Any]]) -> Recording:
     try:
         recording = Recording(
             path=path.resolve(),
-            state=_columns(arrays["state"], arrays["state_cols"]),
-            output=_columns(arrays["output"], arrays["output_cols"]),
-            deliver_mask=arrays["deliver_mask"].astype(np.int64),
-            traj_select=arrays["traj_select"].astype(np.float64),
-            path_points=arrays["path_points"].astype(np.float64),
-            path_offsets=arrays["path_offsets"].astype(np.int64),
+            state=check.columns(arrays["state"], arrays["state_cols"], "state"),
+            output=check.columns(arrays["output"], arrays["output_cols"], "output"),
+            deliver_mask=check.whole_numbers(arrays["deliver_mask"], "deliver_mask"),
+            traj_select=check.numbers(arrays["traj_select"], "traj_select", 2),
+            path_points=check.numbers(arrays["path_points"], "path_points", 2),
+            path_offsets=check.whole_numbers(arrays["path_offsets"], "path_offsets"),
             overrides=_overrides(str(arrays["params_json"])),
         )
-        _check_shapes(recording)
-    except (ValueError, TypeError, IndexError, yaml.YAMLError) as error:
+        _check(recording)
+        recording.state["steer"] = check.as_message(recording.state["steer"])
+        recording.path_points[:, 7:] = check.as_message(recording.path_points[:, 7:])
+    except (ValueError, TypeError, IndexError) as error:
         raise RecordingError(f"{path} is no recorded run: {error}") from None
     return recording
 
 
-def _columns(table: npt.NDArray[Any], names: npt.NDArray[Any]) -> dict[str, Table]:
-    if table.ndim != 2 or table.shape[1] != len(names):
-        raise ValueError(f"a table of shape {table.shape} does not fit its {len(names)} columns")
-    return {str(name): table[:, i].astype(np.float64) for i, name in enumerate(names)}
-
-
 def _overrides(text: str) -> dict[str, Any]:
     """Return the parameters that a run changed; values that are text are read as YAML scalars."""
-    values = json.loads(text)
-    if not isinstance(values, dict):
-        raise ValueError("params_json is not a map")
-    return {k: yaml.safe_load(v) if isinstance(v, str) else v for k, v in values.items()}
+    try:
+        values = json.loads(text)
+        if isinstance(values, dict):
+            return {k: yaml.safe_load(v) if isinstance(v, str) else v for k, v in values.items()}
+    except (ValueError, yaml.YAMLError) as error:
+        raise ValueError(f"params_json: {str(error).splitlines()[0]}") from None
+    raise ValueError("params_json is not a map")
 
 
-def _check_shapes(run: Recording) -> None:
-    _require(run.state, STATE_COLUMNS, "state")
-    _require(run.output, CONTRACT_COLUMNS, "output")
+def _check(run: Recording) -> None:
+    check.require(run.state, STATE_COLUMNS, "state")
+    check.require(run.output, CONTRACT_COLUMNS, "output")
     ticks = {
         "state": len(run.state["t"]),
         "output": len(run.output["t"]),
@@ -167,29 +172,9 @@ def _check_shapes(run: Recording) -> None:
             raise ValueError(f"{name} has {count} ticks, deliver_mask {run.ticks}")
     if run.ticks == 0:
         raise ValueError("it has no ticks")
-    if run.traj_select.shape[1] != 4 or run.path_points.shape[1] < _POINT_COLUMNS:
-        raise ValueError("traj_select needs 4 columns and path_points 13")
-    _check_selection(run)
-
-
-def _check_selection(run: Recording) -> None:
-    chosen = run.traj_select[run.traj_select[:, 0] >= 0]
-    offsets = run.path_offsets
-    if len(offsets) == 0 or (np.diff(offsets) < 0).any() or offsets[-1] > len(run.path_points):
-        raise ValueError("path_offsets do not fit path_points")
-    if not len(chosen):
-        return
-    paths = chosen[:, 0].astype(np.int64)
-    if paths.max() >= len(offsets) - 1:
-        raise ValueError(f"traj_select names path {paths.max()} of {len(offsets) - 1}")
-    if (chosen[:, 2] > offsets[paths + 1] - offsets[paths]).any() or (chosen[:, 1] < 0).any():
-        raise ValueError("traj_select reaches beyond its path")
-
-
-def _require(columns: dict[str, Table], names: Sequence[str], what: str) -> None:
-    missing = [name for name in names if name not in columns]
-    if missing:
-        raise ValueError(f"{what} lacks the column '{missing[0]}'")
+    check.check_state(run.state)
+    check.check_paths(run.path_points, run.path_offsets)
+    check.check_selection(run.traj_select, run.path_offsets)
 
 
 def find(paths: Sequence[Path]) -> list[Path]:

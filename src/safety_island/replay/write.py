@@ -5,7 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from safety_island.errors import IslandError
-from safety_island.replay.recording import CONTRACT_COLUMNS, Recording, Table
+from safety_island.replay.check import Table
+from safety_island.replay.recording import CONTRACT_COLUMNS, Recording
 
 
 def write_csv(folder: Path, run: Recording, replayed: dict[str, Table]) -> Path:
