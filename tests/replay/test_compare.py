@@ -21,7 +21,7 @@ def run(solver: str = "unconstraint_fast", **columns: Any) -> Recording:
     """A recording of six ticks, of which only what is compared is filled."""
     output: dict[str, Table] = {name: np.zeros(TICKS) for name in CONTRACT_COLUMNS}
     output |= {"published": np.ones(TICKS), "is_steer_converged": np.zeros(TICKS)}
-    output |= {"t": 1000.0 + np.arange(TICKS)}
+    output |= {"t": np.arange(1000.0, 1000.0 + TICKS)}
     output |= {name: np.array(values, float) for name, values in columns.items()}
     none = np.zeros((0, 0))
     return Recording(

@@ -1,0 +1,49 @@
+"""``island bench tick``: what it prints and what it takes; how long a tick is, no test says."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import pytest
+
+from safety_island.cli.main import main
+
+pytest.importorskip("osqp")
+Capture = pytest.CaptureFixture[str]
+
+
+def test_json_has_the_keys_that_scripts_read(capsys: Capture) -> None:
+    assert main(["bench", "tick", "--rounds", "1", "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    times = {"median_us", "p99_us", "max_us", "yardstick_us", "ratio"}
+    assert times <= set(told)
+    assert all(math.isfinite(told[name]) and told[name] > 0.0 for name in times)
+    assert told["median_us"] <= told["p99_us"] <= told["max_us"]
+    assert told["ratio"] == pytest.approx(told["median_us"] / told["yardstick_us"])
+    assert (told["solver"], told["ticks"]) == ("unconstraint_fast", 300)
+
+
+def test_one_solver_for_a_person(capsys: Capture) -> None:
+    assert main(["bench", "tick", "--rounds", "1", "--solver", "daqp"]) == 0
+    head, row, foot = capsys.readouterr().out.splitlines()
+    assert head.split() == ["solver", "median", "p99", "max", "yardstick", "ratio"]
+    assert row.split()[0] == "daqp" and row.count(" us") == 4
+    assert "C++" in foot
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["bench"], "tick"),
+        (["bench", "tick", "--rounds", "0"], "'0' is not a number of rounds (1 to 1000)"),
+        (["bench", "tick", "--rounds", "1001"], "'1001'"),
+        (["bench", "tick", "--rounds", "two"], "'two'"),
+        (["bench", "tick", "--rounds", "\u0661"], "is not a number of rounds"),
+        (["bench", "tick", "--solver", "osqp"], "osqp"),
+    ],
+)
+def test_what_it_does_not_take(words: list[str], told: str, capsys: Capture) -> None:
+    assert main(words) == 2
+    shown = capsys.readouterr()
+    assert told in shown.err and shown.out == ""
