@@ -7,6 +7,7 @@ import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -53,7 +54,7 @@ SHORT = (
     "straight_offset/ctrl0.03_osqp_nodelay",
     "u_turn/ctrl0.15_osqp",
 )
-"""One run of each variant and solver; its first SHORT_TICKS run without compilation too."""
+"""One run of each variant and solver; its first SHORT_TICKS are played without compilation too."""
 
 SHORT_TICKS = 15
 
@@ -132,26 +133,43 @@ def test_a_run_is_the_firmwares(path: Path) -> None:
         check_trace(run, columns)
 
 
-@pytest.mark.skipif(JIT, reason="the whole runs are played where kernels are compiled")
-@pytest.mark.parametrize("name", SHORT)
-def test_a_short_run_is_the_firmwares(name: str) -> None:
-    run = cut(recorded(name), SHORT_TICKS)
-    columns = play(run)
-    verdict = judge(run, columns)
-    assert verdict.passed, str(verdict.exceeding)
-    check_trace(run, columns)
+def play_short(path: str) -> None:
+    """Replay the short runs and write their columns to ``path``, as ``run:column``."""
+    flat: dict[str, Any] = {}
+    for name in SHORT:
+        columns = play(cut(recorded(name), SHORT_TICKS))
+        flat |= {f"{name}:{key}".replace("/", "|"): values for key, values in columns.items()}
+    np.savez(path, **flat)
 
 
-@pytest.mark.skipif(not JIT, reason="this process runs plain Python already")
-@pytest.mark.timeout(600)  # some 20 s on an idle machine
-def test_a_short_run_of_each_kind_without_compilation() -> None:
+def played_plainly(folder: Path) -> dict[str, dict[str, Table]]:
+    """The columns of the short runs, replayed by a process that compiles nothing."""
+    code = "import sys; from tests.golden import test_parity as t; t.play_short(sys.argv[1])"
     result = subprocess.run(
-        [sys.executable, "-m", "pytest", "-q", "-n", "0", "-p", "no:cacheprovider", __file__],
+        [sys.executable, "-c", code, str(folder / "plain.npz")],
         cwd=ROOT,
-        env=os.environ | {"SAFETY_ISLAND_JIT": "0"},
+        env=os.environ | {"SAFETY_ISLAND_JIT": "0", "PYTHONPATH": f"{ROOT / 'src'}:{ROOT}"},
         capture_output=True,
         text=True,
         check=False,
     )
-    assert result.returncode == 0, result.stdout[-4000:] + result.stderr[-1000:]
-    assert f"{len(SHORT)} passed" in result.stdout
+    assert result.returncode == 0, result.stderr[-2000:]
+    assert result.stderr == "", "plain Python warned of something"
+    columns: dict[str, dict[str, Table]] = {name: {} for name in SHORT}
+    with np.load(folder / "plain.npz") as data:
+        for key in data.files:
+            name, _, column = key.replace("|", "/").partition(":")
+            columns[name][column] = data[key]
+    return columns
+
+
+@pytest.mark.timeout(600)  # some 20 s on an idle machine
+def test_plain_python_is_the_firmware_too_and_gives_the_same_bits(tmp_path: Path) -> None:
+    """One short run of each kind: the same source, compiled or not."""
+    for name, plain in played_plainly(tmp_path).items():
+        run = cut(recorded(name), SHORT_TICKS)
+        verdict = judge(run, plain)
+        assert verdict.passed, f"{name}: {verdict.exceeding}"
+        check_trace(run, plain)
+        for column, values in play(run).items() if JIT else ():
+            assert values.tobytes() == plain[column].tobytes(), f"{name}: {column}"

@@ -225,12 +225,12 @@ def _add_input_weights(lat, hessian, f, n):
 
 @kernel
 def is_finite_problem(hessian, f, n):
-    """Whether every entry that the solver reads is finite."""
+    """Whether every entry that the solver reads is finite, and their sum too."""
     total = 0.0
     for i in range(n):
-        total += f[i] * 0.0
+        total += abs(f[i])
         for k in range(i + 1):
-            total += hessian[i, k] * 0.0
+            total += abs(hessian[i, k])
     return math.isfinite(total)
 
 

@@ -31,6 +31,7 @@ _BAD_QUATERNION = int(Refusal.BAD_QUATERNION)
 _TOO_LONG = int(Refusal.TOO_LONG)
 _OUT_OF_RANGE = int(Refusal.OUT_OF_RANGE)
 
+_LARGEST_PART = 2.0  # of a quaternion; the square of a larger one could overflow
 _FEWEST_POINTS = 2
 _SAME_PLACE = 1e-8
 _EXTENSION_POINTS = 256  # room for the points that the terminal extension appends
@@ -50,10 +51,11 @@ def _check_point(point):
     in_range = place <= MAX_POSITION and speed <= MAX_SPEED and turn <= MAX_TURN
     if not in_range or abs(point.acc) > MAX_ACCELERATION:
         return _OUT_OF_RANGE
-    square = point.qx * point.qx + point.qy * point.qy
-    square += point.qz * point.qz + point.qw * point.qw
-    if MIN_SQUARE_NORM <= square <= MAX_SQUARE_NORM:
-        return _ACCEPTED
+    if max(abs(point.qx), abs(point.qy), abs(point.qz), abs(point.qw)) <= _LARGEST_PART:
+        square = point.qx * point.qx + point.qy * point.qy
+        square += point.qz * point.qz + point.qw * point.qw
+        if MIN_SQUARE_NORM <= square <= MAX_SQUARE_NORM:
+            return _ACCEPTED
     parts = point.qx + point.qy + point.qz + point.qw
     return _BAD_QUATERNION if math.isfinite(parts) else _NOT_FINITE
 

@@ -23,10 +23,10 @@ def _response_to_commands(lat, start, end, tau):
     t = start
     while i < n and end > lat.predictor_t[i] + _TOLERANCE:
         step = lat.predictor_t[i] - t
-        total += (1.0 - math.exp(-step / tau)) * lat.predictor_u[i - 1]
+        total += (1.0 - math.exp(-step / tau)) * float(lat.predictor_u[i - 1])
         t = lat.predictor_t[i]
         i += 1
-    return total + (1.0 - math.exp(-(end - t) / tau)) * lat.predictor_u[i - 1]
+    return total + (1.0 - math.exp(-(end - t) / tau)) * float(lat.predictor_u[i - 1])
 
 
 @kernel
