@@ -119,3 +119,17 @@ def on_path(points: Records, **overrides: Any) -> Rig:
     rig = Rig(**overrides)
     rig.path(points)
     return rig
+
+
+def stations(rig: Rig) -> Values:
+    return np.array(rig.lat.rs[: rig.lat.ref_n])
+
+
+def column(rig: Rig, name: str) -> Values:
+    return np.array(rig.lat[name][: rig.lat.ref_n])
+
+
+def arc_of(points: Records) -> Values:
+    """Plane arc length of received points [m]."""
+    steps = np.hypot(np.diff(points["x"]), np.diff(points["y"]))
+    return np.concatenate([[0.0], np.cumsum(steps)])

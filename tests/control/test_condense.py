@@ -13,7 +13,7 @@ from safety_island.control.records import Records
 from safety_island.control.status import MpcStatus
 from tests.control import dense_mpc
 from tests.control.lateral_rig import Rig, Values, make_points, on_path
-from tests.control.test_vehicle_model import FRONT_HEAVY
+from tests.control.vehicles import FRONT_HEAVY
 
 WEIGHTS = (
     *("lat_error", "heading_error", "heading_error_squared_vel"),

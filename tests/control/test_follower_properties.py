@@ -19,9 +19,9 @@ from safety_island.control.input_check import (
 )
 from safety_island.control.records import POINT, Records
 from safety_island.control.status import Refusal
+from tests.control.follower_rig import finite
 from tests.control.lateral_rig import START
-from tests.control.test_follower import finite
-from tests.control.test_vehicle_model import DYNAMICS
+from tests.control.vehicles import DYNAMICS
 from tests.golden.harness import firmware
 
 EVERYTHING: dict[str, Any] = {

@@ -10,17 +10,18 @@ import pytest
 from safety_island.control.limits import MAX_REFERENCE
 from safety_island.control.records import Records
 from safety_island.control.status import MpcStatus
-from tests.control.lateral_rig import Rig, Values, circle, line, make_points, on_path
+from tests.control.lateral_rig import (
+    Values,
+    arc_of,
+    circle,
+    column,
+    line,
+    make_points,
+    on_path,
+    stations,
+)
 
 STEP = 0.1
-
-
-def stations(rig: Rig) -> Values:
-    return np.array(rig.lat.rs[: rig.lat.ref_n])
-
-
-def column(rig: Rig, name: str) -> Values:
-    return np.array(rig.lat[name][: rig.lat.ref_n])
 
 
 def test_the_points_are_anchored_at_the_ego() -> None:
@@ -61,12 +62,6 @@ def test_speed_is_linear_between_the_received_points_and_zero_at_the_end() -> No
     n = rig.lat.ref_n
     closing = [rig.lat[name][n] - rig.lat[name][n - 1] for name in ("rx", "ry", "rz", "rv")]
     assert closing == [0.0, 0.0, 0.0, 0.0]
-
-
-def arc_of(points: Records) -> Values:
-    """Plane arc length of received points [m]."""
-    steps = np.hypot(np.diff(points["x"]), np.diff(points["y"]))
-    return np.concatenate([[0.0], np.cumsum(steps)])
 
 
 def natural_spline(arc: Values, values: Values, s: Values) -> Values:
@@ -164,53 +159,6 @@ def test_the_thresholds_keep_the_ego_on_its_own_branch() -> None:
         rig.place(5.0, 0.15)
         rig.tick()
         assert stations(rig)[rig.lat.anchor] == pytest.approx(anchor, abs=0.3), limits
-
-
-def test_smoothing_is_the_mean_over_a_window_that_shrinks_at_the_ends() -> None:
-    x = np.arange(0.0, 30.0, 0.5)
-    zigzag = make_points(x, np.where(np.arange(60) % 4 < 2, 0.0, 0.1), v=np.sin(x), yaw=0.0)
-    plain = on_path(zigzag)
-    smooth = on_path(zigzag, enable_path_smoothing=True, path_filter_moving_ave_num=10)
-    for rig in (plain, smooth):
-        rig.tick()
-    n = plain.lat.ref_n
-    for name in ("rx", "ry", "rv"):
-        raw = column(plain, name)
-        if name == "rv":
-            raw[-1] = np.interp(stations(plain)[-1], arc_of(zigzag), zigzag["v"])
-        reach = [min(10, i, n - 1 - i) for i in range(n)]
-        mean = np.array([raw[i - r : i + r + 1].mean() for i, r in enumerate(reach)])
-        if name == "rv":
-            mean[-1] = 0.0
-        np.testing.assert_allclose(column(smooth, name), mean, rtol=0, atol=1e-13)
-
-
-@pytest.mark.parametrize(("reach", "smoothed"), [(24, True), (25, False), (26, False)])
-def test_a_path_is_smoothed_when_it_has_more_than_twice_the_reach(
-    reach: int, smoothed: bool
-) -> None:
-    points = circle(5.0, 5.01)
-    plain = on_path(points)
-    other = on_path(points, enable_path_smoothing=True, path_filter_moving_ave_num=reach)
-    for rig in (plain, other):
-        rig.tick()
-    assert plain.lat.ref_n == 50
-    assert bool((column(plain, "ry") != column(other, "ry")).any()) == smoothed
-
-
-@pytest.mark.parametrize(("yaw", "sign"), [(0.0, 1.0), (math.pi, -1.0)])
-def test_the_extension_goes_ten_metres_along_the_last_yaw(yaw: float, sign: float) -> None:
-    points = make_points(np.arange(0.0, 10.0), v=sign, yaw=yaw)
-    points["qz"][-1], points["qw"][-1] = math.sin((yaw + 0.3) / 2), math.cos((yaw + 0.3) / 2)
-    rig = on_path(points, extend_trajectory_for_end_yaw_control=True)
-    rig.place(yaw=yaw)
-    rig.tick()
-    n = rig.lat.ref_n - 100
-    x, y, v = (column(rig, name) for name in ("rx", "ry", "rv"))
-    steps = np.arange(1, 101) * STEP
-    np.testing.assert_allclose(x[n:] - x[n - 1], steps * math.cos(0.3), rtol=0, atol=1e-12)
-    np.testing.assert_allclose(y[n:] - y[n - 1], steps * math.sin(0.3), rtol=0, atol=1e-12)
-    assert (v[n:-1] == 10.0).all() and v[-1] == 0.0
 
 
 def test_the_longest_path_that_is_accepted_fits() -> None:

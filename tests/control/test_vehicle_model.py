@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 import pytest
@@ -13,17 +12,11 @@ from hypothesis import strategies as st
 from safety_island.control.records import pack_parameters
 from safety_island.control.vehicle_model import discretize, feed_forward
 from tests.control import dense_mpc
+from tests.control.vehicles import FRONT_HEAVY
+from tests.control.vehicles import MODELS as PLAIN_MODELS
 from tests.golden.harness import firmware
 
-MASSES = {f"vehicle_mass_{wheel}": 600.0 for wheel in ("fl", "fr", "rl", "rr")}
-DYNAMICS = MASSES | {"vehicle_cf": 155494.663, "vehicle_cr": 155494.663}
-FRONT_HEAVY = DYNAMICS | {"vehicle_mass_fl": 800.0, "vehicle_cr": 120000.0}
-MODELS: dict[str, dict[str, Any]] = {
-    "kinematics": {"vehicle_model_type": "kinematics"},
-    "no delay": {"vehicle_model_type": "kinematics_no_delay"},
-    "dynamics": {"vehicle_model_type": "dynamics"} | DYNAMICS,
-    "front heavy": {"vehicle_model_type": "dynamics"} | FRONT_HEAVY,
-}
+MODELS = PLAIN_MODELS | {"front heavy": {"vehicle_model_type": "dynamics"} | FRONT_HEAVY}
 SETS = {name: firmware(**values) for name, values in MODELS.items()}
 RECORDS = {name: pack_parameters(values)[0] for name, values in SETS.items()}
 

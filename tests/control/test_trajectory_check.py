@@ -1,0 +1,77 @@
+"""Trajectories that are refused as a whole: how many points, how close, how long."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from safety_island.control.follower import TrajectoryFollower
+from safety_island.control.limits import MAX_POINTS, MAX_REFERENCE
+from safety_island.control.status import Refusal
+from tests.control.lateral_rig import line, make_points
+from tests.golden.harness import firmware
+
+
+@pytest.fixture(scope="module")
+def gate() -> TrajectoryFollower:
+    return TrajectoryFollower(firmware())
+
+
+@pytest.mark.parametrize("count", [0, 1])
+def test_too_few_points(gate: TrajectoryFollower, count: int) -> None:
+    assert gate.offer_trajectory(line(40.0)[:count], 1000.0) is Refusal.TOO_FEW_POINTS
+
+
+@pytest.mark.parametrize("count", [-1, 2**40])
+def test_an_absurd_count(gate: TrajectoryFollower, count: int) -> None:
+    wanted = Refusal.TOO_FEW_POINTS if count < 0 else Refusal.TOO_MANY_POINTS
+    assert gate.offer_incoming(count, 1000.0) is wanted
+
+
+def test_the_most_points(gate: TrajectoryFollower) -> None:
+    x = 0.1 * np.arange(MAX_POINTS + 1)
+    assert gate.offer_trajectory(make_points(x[:-1]), 1000.0) is Refusal.ACCEPTED
+    assert gate.offer_trajectory(make_points(x), 1000.0) is Refusal.TOO_MANY_POINTS
+    assert gate.offer_incoming(MAX_POINTS + 1, 1000.0) is Refusal.TOO_MANY_POINTS
+
+
+@pytest.mark.parametrize("index", [0, 20, 38])
+@pytest.mark.parametrize(
+    ("dx", "dy", "refused"),
+    [
+        (0.0, 0.0, True),
+        (0.9e-8, -0.9e-8, True),
+        (1.1e-8, 0.0, False),
+        (0.0, -1.1e-8, False),
+    ],
+)
+def test_consecutive_points_that_coincide(
+    gate: TrajectoryFollower, index: int, dx: float, dy: float, refused: bool
+) -> None:
+    """Nearer than 1e-8 m in x and in y."""
+    points = make_points(np.arange(40.0) - index)
+    points["x"][index + 1 :] += dx - 1.0
+    points["y"][index + 1 :] = dy
+    wanted = Refusal.COINCIDENT_POINTS if refused else Refusal.ACCEPTED
+    assert gate.offer_trajectory(points, 1000.0) is wanted
+
+
+def test_points_may_meet_again_later(gate: TrajectoryFollower) -> None:
+    there_and_back = make_points([0.0, 1.0, 0.0, 1.0])
+    assert gate.offer_trajectory(there_and_back, 1000.0) is Refusal.ACCEPTED
+
+
+@pytest.mark.parametrize("step", [0.02, 0.1, 1.0])
+def test_a_path_longer_than_the_reference_can_hold(step: float) -> None:
+    """Its 2-D length counts, whatever the number of points; height does not."""
+    gate = TrajectoryFollower(firmware(traj_resample_dist=step))
+    room = (MAX_REFERENCE - 256) * step
+    for angle in (0.0, 0.7, 2.5):
+        for share, wanted in ((0.999999, Refusal.ACCEPTED), (1.000001, Refusal.TOO_LONG)):
+            along: Any = np.linspace(0.0, room * share, 30)
+            points = make_points(along * math.cos(angle), along * math.sin(angle))
+            points["z"] = np.linspace(0.0, 1e6, 30)
+            assert gate.offer_trajectory(points, 1000.0) is wanted
