@@ -12,7 +12,8 @@ def update_offset(params, lat, vx, wz, steer):
     """Learn from one tick: speed [m/s], yaw rate [rad/s] and the raw measured angle [rad].
 
     The expected angle is atan(wz L / vx), whatever the size of vx. The firmware takes
-    atan2(wz L, vx), which is the same forward and +-pi in reverse. The storage starts full of zeros, so the estimate grows slowly.
+    atan2(wz L, vx), which is the same forward and +-pi in reverse. The storage starts full of
+    zeros, so the estimate grows slowly.
     """
     if abs(vx) <= params.steering_offset_update_vel_threshold or vx == 0.0:
         return
