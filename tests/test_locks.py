@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import re
 import tomllib
+from importlib.metadata import distributions
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).parents[1]
 LOCKS = ("requirements.lock", "requirements-dev.lock")
-PIN = re.compile(r"([a-z0-9-]+)==(\S+) ;.*\\$")
+PIN = re.compile(r"([a-z0-9-]+)(?:\[[^]]*\])?==(\S+) ;.*\\$")
+EXTRAS = re.compile(r"([A-Za-z0-9._-]+)\[([^]]+)\]")
 
 
 def pins(name: str) -> dict[str, set[str]]:
@@ -40,6 +42,19 @@ def test_every_requirement_is_locked(lock: str) -> None:
             assert locked[name] == {version}, f"{requirement}: run tools/lock"
 
 
+def test_extras_that_a_package_asks_for_are_pinned_with_it() -> None:
+    text = (ROOT / "requirements-dev.lock").read_text()
+    locked = pins("requirements-dev.lock")
+    for distribution in distributions():
+        if distribution.name.lower() not in locked:
+            continue
+        for requirement in distribution.requires or ():
+            asked = EXTRAS.match(requirement)
+            if asked and "extra ==" not in requirement and asked[1].lower() in locked:
+                # pip takes "name" and "name[extra]" for two things, and looks for the newest one.
+                assert f"{asked[1].lower()}[{asked[2]}]==" in text, f"{requirement}: run tools/lock"
+
+
 def test_development_adds_and_changes_nothing() -> None:
     run, dev = (pins(lock) for lock in LOCKS)
     assert {name: dev.get(name) for name in run} == run
@@ -50,6 +65,6 @@ def test_every_package_has_a_hash_and_no_host(lock: str) -> None:
     text = (ROOT / lock).read_text()
     assert "://" not in text
     assert not re.search(r"(^|\s)/", text), "a path of some machine"
-    packages = re.split(r"\n(?=[a-z0-9-]+==)", text)[1:]
+    packages = re.split(r"\n(?=[a-z0-9-]+(?:\[[^]]*\])?==)", text)[1:]
     assert len(packages) > 20
     assert all("--hash=sha256:" in package for package in packages)
