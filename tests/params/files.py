@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from safety_island.params import ParameterError, read
-from safety_island.params.sets import FILES
+from safety_island.params.sets import FILES, OWN
 
 HEAD = "/**:\n  ros__parameters:\n"
 
@@ -28,7 +28,7 @@ def parameter_file(folder: Path, body: str, name: str = "my.param.yaml") -> Path
 
 def shipped_text(set_name: str, file: str) -> str:
     """Return the text of one file of a shipped set."""
-    folder = files("safety_island.params") / "sets" / set_name
+    folder = files("safety_island.params") / "sets" / ("island" if file in OWN else set_name)
     return folder.joinpath(*file.split("/")).read_text("utf-8")
 
 

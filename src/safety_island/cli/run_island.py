@@ -17,12 +17,11 @@ from safety_island.cli.run_settings import RunSettings, run_settings
 from safety_island.cli.run_start import bring_up, thread_stacks
 from safety_island.cli.stopping import StopAtOnce
 from safety_island.control.follower import TrajectoryFollower
-from safety_island.control.params import Parameters
 from safety_island.control.records import Records
 from safety_island.dds.network import check_exists
 from safety_island.node import ControllerNode, open_transport
 from safety_island.node.controller import NAME
-from safety_island.params import notes
+from safety_island.params import IslandParameters, notes
 from safety_island.platform import Platform, load
 
 
@@ -31,7 +30,7 @@ class Run(NamedTuple):
 
     platform: Platform
     settings: RunSettings
-    parameters: Parameters
+    parameters: IslandParameters
     arguments: argparse.Namespace
 
 

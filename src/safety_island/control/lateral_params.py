@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from safety_island.control.limits import MAX_HORIZON, MAX_OFFSET_SAMPLES
-from safety_island.control.parameter import parameter, switch, weight
+from safety_island.parameter import parameter, switch, weight
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from safety_island.control.parameter import parameter, switch
+from safety_island.parameter import parameter, switch
 
 
 @dataclass(frozen=True)

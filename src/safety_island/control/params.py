@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 from safety_island.control.lateral_params import LateralParams
 from safety_island.control.longitudinal_params import LongitudinalParams
-from safety_island.control.parameter import key_of, parameter
 from safety_island.control.vehicle_params import NodeParams, VehicleParams
+from safety_island.parameter import key_of, parameter
 
 __all__ = [
     "LateralParams",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from safety_island.control.parameter import parameter
+from safety_island.parameter import parameter
 
 
 @dataclass(frozen=True)

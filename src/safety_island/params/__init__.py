@@ -14,11 +14,13 @@ from safety_island.params.loader import (
     with_period,
 )
 from safety_island.params.problem import ParameterError, Place, Problem
+from safety_island.params.schema import IslandParameters
 from safety_island.params.sets import SETS
 
 __all__ = [
     "SETS",
     "Ignored",
+    "IslandParameters",
     "Loaded",
     "ParameterError",
     "Place",

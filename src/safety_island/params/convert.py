@@ -27,7 +27,7 @@ def convert(known: Known, value: Any) -> Any:
     elif known.kind == "bool":
         if isinstance(value, bool):
             return value
-    elif isinstance(value, str) and value in known.choices:
+    elif isinstance(value, str) and (value in known.choices or not known.choices):
         return value
     raise _not_allowed(known, value)
 

@@ -22,7 +22,9 @@ _FILES_OF_GROUP = {
     "vehicle": FILES[:1],
     "node": FILES[1:3],
     "lateral": FILES[3:4],
-    "longitudinal": FILES[4:],
+    "longitudinal": FILES[4:5],
+    "gate": FILES[5:6],
+    "life_cycle": FILES[6:7],
 }
 _KINDS = {"list": "list of float", "str": "text", "bool": "switch"}
 

@@ -7,11 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from safety_island.control.params import Parameters
 from safety_island.params import consistency
 from safety_island.params.layers import Ignored, Layers
 from safety_island.params.problem import ParameterError, Place, Problem
-from safety_island.params.schema import assemble, values_of
+from safety_island.params.schema import IslandParameters, assemble, values_of
 from safety_island.params.sets import sources_of
 
 DEFAULT = "default"
@@ -22,7 +21,7 @@ DEFAULT = "default"
 class Loaded:
     """A complete set, where each of its values comes from, and the keys without effect."""
 
-    parameters: Parameters
+    parameters: IslandParameters
     origins: Mapping[str, Place]
     ignored: tuple[Ignored, ...]
 
@@ -58,7 +57,7 @@ def load(
     files: Sequence[Path],
     base: str | None = DEFAULT,
     overrides: Mapping[str, object] | None = None,
-) -> Parameters:
+) -> IslandParameters:
     """Return the parameters that ``read`` reads."""
     return read(files, base, overrides).parameters
 
@@ -72,17 +71,17 @@ def check(files: Sequence[Path], base: str | None = DEFAULT) -> tuple[Problem, .
     return ()
 
 
-def load_set(name: str) -> Parameters:
+def load_set(name: str) -> IslandParameters:
     """Return a shipped set: firmware, autoware-0.40 or default."""
     return read((), name).parameters
 
 
-def from_mapping(overrides: Mapping[str, object], base: str = DEFAULT) -> Parameters:
+def from_mapping(overrides: Mapping[str, object], base: str = DEFAULT) -> IslandParameters:
     """Return a shipped set with some values replaced, by the keys of the files."""
     return read((), base, overrides).parameters
 
 
-def replace(parameters: Parameters, values: Mapping[str, Any], name: str) -> Parameters:
+def replace(parameters: IslandParameters, values: Mapping[str, Any], name: str) -> IslandParameters:
     """Return the parameters with some values replaced and everything checked again.
 
     ``name`` is how errors call the source of the values. Raises ParameterError.
@@ -96,7 +95,7 @@ def replace(parameters: Parameters, values: Mapping[str, Any], name: str) -> Par
     return assemble(layers.values)
 
 
-def with_period(parameters: Parameters, period: float) -> Parameters:
+def with_period(parameters: IslandParameters, period: float) -> IslandParameters:
     """Return the parameters at another control period [s], checked again.
 
     Raises ParameterError, for example when a filter's cutoff is too high for it.
@@ -104,6 +103,6 @@ def with_period(parameters: Parameters, period: float) -> Parameters:
     return replace(parameters, {"ctrl_period": period}, "--period")
 
 
-def notes(parameters: Parameters) -> list[str]:
+def notes(parameters: IslandParameters) -> list[str]:
     """Return what a start should say once about these parameters, one line each."""
     return consistency.notes(values_of(parameters))

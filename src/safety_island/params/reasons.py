@@ -30,6 +30,8 @@ REASONS = {
     ),
     "pass_filters_above_nyquist": "a cutoff that cannot act is a mistake",
     "delay_compensation_time": "the firmware's, and that of the controller's own package",
+    "gate.min_trajectory_points": "fewer cannot be followed by the MPC",
+    "life_cycle.mpc_failure_time": "a steering angle that is only held is no control",
     "correct_reverse_signs": (
         "in reverse the firmware has the sign wrong in the acceleration feedback and in the slope"
         " term that comes from the trajectory's pitch"

@@ -15,14 +15,27 @@ from safety_island.control.params import (
     VehicleParams,
     key_of,
 )
+from safety_island.gate.params import GateParams
+from safety_island.life_cycle.params import LifeCycleParams
+
+
+@dataclass(frozen=True)
+class IslandParameters(Parameters):
+    """One complete set: the controllers' parameters and those of what stands around them."""
+
+    gate: GateParams
+    life_cycle: LifeCycleParams
+
 
 GROUPS: dict[str, Any] = {
     "vehicle": VehicleParams,
     "node": NodeParams,
     "lateral": LateralParams,
     "longitudinal": LongitudinalParams,
+    "gate": GateParams,
+    "life_cycle": LifeCycleParams,
 }
-"""Attribute of ``Parameters`` -> its dataclass."""
+"""Attribute of ``IslandParameters`` -> its dataclass."""
 
 
 @dataclass(frozen=True)
@@ -30,7 +43,7 @@ class Known:
     """One parameter."""
 
     key: str
-    group: str  # attribute of Parameters
+    group: str  # attribute of IslandParameters
     name: str  # attribute of the group
     kind: str  # float, int, bool, str or list (of float)
     unit: str
@@ -45,7 +58,7 @@ class Known:
         if self.kind == "bool":
             return "true or false"
         if self.kind == "str":
-            return ", ".join(self.choices)
+            return ", ".join(self.choices) or "any text"
         return f"{self.low:g} to {self.high:g}"
 
     @property
@@ -55,7 +68,7 @@ class Known:
             "float": "a number from ",
             "int": "a whole number from ",
             "list": f"a list of 1 to {MAX_RATE_TABLE} numbers from ",
-            "str": "one of ",
+            "str": "one of " if self.choices else "",
             "bool": "",
         }
         return before[self.kind] + self.range_text + (f" {self.unit}" if self.unit else "")
@@ -83,17 +96,17 @@ KNOWN: dict[str, Known] = {
 """YAML key -> parameter, in the order of the dataclasses."""
 
 
-def values_of(parameters: Parameters) -> dict[str, Any]:
+def values_of(parameters: IslandParameters) -> dict[str, Any]:
     """Return every value of a set by its YAML key."""
     return {
         known.key: getattr(getattr(parameters, known.group), known.name) for known in KNOWN.values()
     }
 
 
-def assemble(values: Mapping[str, Any]) -> Parameters:
+def assemble(values: Mapping[str, Any]) -> IslandParameters:
     """Return the set with these values; every key of KNOWN must be there."""
     groups = {
         group: cls(**{k.name: values[k.key] for k in KNOWN.values() if k.group == group})
         for group, cls in GROUPS.items()
     }
-    return Parameters(**groups)
+    return IslandParameters(**groups)

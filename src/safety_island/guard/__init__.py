@@ -1,0 +1,1 @@
+"""The guard between the controllers and the outputs; it shares no code with `control`."""

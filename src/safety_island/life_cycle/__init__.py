@@ -1,0 +1,1 @@
+"""The island's life cycle: from conditions to a state, and what each state lets out."""
