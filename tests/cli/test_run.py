@@ -17,9 +17,13 @@ import pytest
 from safety_island.cli.main import main
 from safety_island.cli.run_report import RunReport, percentile, sample_ages, tick_values
 from safety_island.control.records import TRACE
+from safety_island.life_cycle.reason import Reason
+from safety_island.life_cycle.state import State
+from safety_island.life_cycle.transition import Life
 from safety_island.messages.outputs import Control
 from safety_island.messages.wire import Time
 from safety_island.node import Outcome, TickReport
+from safety_island.node.input_set import NO_SUBJECT
 from safety_island.node.inputs import INPUTS
 from safety_island.platform import load
 
@@ -34,6 +38,8 @@ def tick(outcome: Outcome = Outcome.PUBLISHED, **values: Any) -> TickReport:
         now=5.0,
         outcome=outcome,
         detail="" if published else "odometry",
+        life=Life(State.ACTIVE if published else State.INIT, Reason.NONE),
+        subject=NO_SUBJECT,
         lateness_s=0.001,
         skipped=0,
         tick_time_s=0.002,

@@ -19,7 +19,7 @@ def main(domain_id: int) -> None:
     parameters = load_set("default")
     follower = TrajectoryFollower(parameters)
     transport = open_transport(platform, domain_id, DdsConfig(loopback_only=True), NAME)
-    with ControllerNode(platform, transport, follower, parameters.node) as node:
+    with ControllerNode(platform, transport, follower, parameters) as node:
         node.run(parameters.node.ctrl_period)
     platform.logger.close()
     leave(0)

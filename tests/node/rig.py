@@ -88,6 +88,9 @@ class FakeFollower:
     def missing(self) -> tuple[str, ...]:
         return tuple(self.absent)
 
+    def allow_control(self, allowed: bool) -> None:
+        self.allowed = allowed
+
     def is_ready(self) -> bool:
         self.calls.append(("is_ready",))
         return self.ready
@@ -120,7 +123,7 @@ class Rig:
         self.domain = MemoryDomain(self.clock)
         self.commands = self.listen(topics.CONTROL)
         self.node = ControllerNode(
-            self.platform, self.domain, follower, from_mapping(overrides).node, outputs
+            self.platform, self.domain, follower, from_mapping(overrides), outputs
         )
         self._publishers = {
             entry: self.domain.publisher(entry.name, entry.type_name, entry.qos)
@@ -143,7 +146,9 @@ class Rig:
 
     def odometry(self, vx: float = 0.0, x: float = 0.0, y: float = 0.0) -> None:
         values = dict.fromkeys(Odometry._fields[3:], 0.0) | {"vx": vx, "x": x, "y": y, "qw": 1.0}
-        self.send(topics.ODOMETRY, encode_odometry(Odometry(self.stamp, "map", "base", **values)))
+        self.send(
+            topics.ODOMETRY, encode_odometry(Odometry(self.stamp, "map", "base_link", **values))
+        )
 
     def steering(self, angle: float = 0.0) -> None:
         self.send(topics.STEERING, encode_steering(Steering(self.stamp, angle)))

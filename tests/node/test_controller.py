@@ -8,6 +8,7 @@ import pytest
 
 from safety_island.control.status import Mode, Refusal
 from safety_island.dds import topics
+from safety_island.gate.reason import SampleReason
 from safety_island.node.report import Outcome
 from tests.node.rig import ROWS, FakeFollower, Rig
 
@@ -39,8 +40,8 @@ class TestOrder:
         rig.tick()
         rig.tick()
         assert follower.calls == [("steering", 0.5)]
-        steering = next(item for item in rig.node.inputs if item.name == "steering")
-        assert (steering.subscription.received, steering.subscription.superseded) == (3, 2)
+        steering = next(item for item in rig.node.inputs.items if item.name == "steering")
+        assert (steering.subscription.received, steering.superseded) == (3, 2)
 
     def test_a_tick_without_new_samples_uses_the_old_ones(self, rig: Rig) -> None:
         rig.everything(ROWS)
@@ -95,11 +96,11 @@ class TestRefusal:
         rig.tick()
         for _ in range(3):
             rig.send(topics.ODOMETRY, b"\x00\x01\x00\x00" + bytes(40))
-            assert rig.tick().refused == 1
+            assert rig.tick(0.03).refused == 1
         rig.send(topics.ODOMETRY, b"\x00\x07\x00\x00" + bytes(40))
-        assert rig.tick().published  # on what is in force
-        odometry = next(item for item in rig.node.inputs if item.name == "odometry")
-        assert odometry.refused == {"truncated": 3, "encapsulation": 1}
+        assert rig.tick(0.03).published  # on what is in force
+        odometry = next(item for item in rig.node.inputs.items if item.name == "odometry")
+        assert odometry.refused == {SampleReason.TRUNCATED: 3, SampleReason.ENCAPSULATION: 1}
         assert odometry.accepted == 1
         assert len([line for line in rig.lines if "/localization/kinematic_state" in line]) == 2
 
@@ -109,7 +110,7 @@ class TestRefusal:
         follower.refusal = Refusal.BAD_QUATERNION
         rig.odometry()
         assert rig.tick().refused == 1
-        assert rig.node.inputs[1].refused == {"bad_quaternion": 1}
+        assert rig.node.inputs.items[1].refused == {SampleReason.BAD_QUATERNION: 1}
         assert "refused a sample: bad quaternion" in rig.lines[-1]
 
     def test_too_many_points_are_refused_before_they_are_copied(
@@ -117,7 +118,7 @@ class TestRefusal:
     ) -> None:
         rig.trajectory([(float(i), 0.0, 1.0) for i in range(len(follower.incoming) + 1)])
         assert rig.tick().refused == 1
-        assert rig.node.inputs[0].refused == {"length": 1}
+        assert rig.node.inputs.items[0].refused == {SampleReason.LENGTH: 1}
         assert follower.calls == []
 
     def test_a_refused_sample_ages_like_one_that_never_came(

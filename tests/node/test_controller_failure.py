@@ -7,6 +7,7 @@ import math
 import pytest
 
 from safety_island.control.status import MpcStatus
+from safety_island.gate.reason import SampleReason
 from safety_island.node.report import Outcome
 from tests.node.rig import ROWS, FakeFollower, Rig
 
@@ -20,7 +21,7 @@ def test_what_is_not_finite_is_never_sent(rig: Rig, follower: FakeFollower, valu
     assert rig.command() is None
 
 
-@pytest.mark.parametrize("place", ["missing", "is_ready", "run_lateral", "sync"])
+@pytest.mark.parametrize("place", ["is_ready", "run_lateral", "sync"])
 def test_an_exception_costs_one_tick(
     rig: Rig, follower: FakeFollower, monkeypatch: pytest.MonkeyPatch, place: str
 ) -> None:
@@ -51,7 +52,7 @@ def test_an_exception_over_a_sample_refuses_that_sample(
     monkeypatch.setattr(follower, "offer_steering", fail)
     rig.steering()
     assert rig.tick().published
-    assert rig.node.inputs[2].refused == {"fault": 1}
+    assert rig.node.inputs.items[2].refused == {SampleReason.FAULT: 1}
     assert "ZeroDivisionError: on purpose" in rig.lines[-1]
 
 
@@ -59,7 +60,7 @@ def test_a_failed_mpc_still_gives_a_command_and_says_why(rig: Rig, follower: Fak
     follower.lateral_status = MpcStatus.TOO_FAR
     rig.everything(ROWS)
     assert rig.tick().published
-    assert "no new steering angle: too far" in rig.lines[-1]
+    assert any("no new steering angle: too far" in line for line in rig.lines)
 
 
 def test_controllers_that_are_not_ready(rig: Rig, follower: FakeFollower) -> None:

@@ -78,11 +78,12 @@ class Island:
         """Publish one sample of each input but the absent ones: 1 m/s on a straight course."""
         stamp = Time.from_nanoseconds(self.clock.wall_ns())
         values = dict.fromkeys(Odometry._fields[3:], 0.0) | {"vx": 1.0, "qw": 1.0}
+        values["y"] = stamp.nanosec * 1e-10  # what moves does not repeat itself
         samples = {
             topics.ODOMETRY: encode_odometry(Odometry(stamp, "map", "base_link", **values)),
             topics.STEERING: encode_steering(Steering(stamp, 0.0)),
             topics.ACCELERATION: encode_acceleration(Acceleration(stamp, "base_link", *[0.0] * 6)),
-            topics.OPERATION_MODE: encode_operation_mode(OperationMode(stamp, 2, True)),
+            topics.OPERATION_MODE: encode_operation_mode(OperationMode(stamp, 1, True)),
             topics.TRAJECTORY: encode_trajectory(
                 stamp, "map", make_points([(x - 5.0, 0.5, 1.0) for x in range(60)])
             ),
@@ -155,7 +156,7 @@ def test_bad_bytes_are_refused_and_commands_go_on(island: Island) -> None:
     control = island.outputs[topics.CONTROL]
     island.send_until(has_come(control))
     values = dict.fromkeys(Odometry._fields[3:], float("nan"))
-    odometry = Odometry(Time(), "map", "base_link", **values)
+    odometry = Odometry(Time.from_nanoseconds(island.clock.wall_ns()), "map", "base_link", **values)
     assert island.publishers[topics.ODOMETRY].write(encode_odometry(odometry))
     island.send_until(has_come(control), topics.ODOMETRY)
     assert "not finite" in island.wait_for_line("/localization/kinematic_state")

@@ -80,6 +80,7 @@ def test_the_sim_platform_has_topics_in_memory() -> None:
 
 def test_a_publisher_that_fails_is_counted_and_logged_once() -> None:
     class Broken:
+        guid = b""
         failed = 0
         last_error = "no room in time"
 

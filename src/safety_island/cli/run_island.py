@@ -55,11 +55,20 @@ def _start(run: Run, start: StopAtOnce, stack: ExitStack) -> None:
     can = CanSide(platform, settings, parameters.node.ctrl_period)
     stack.callback(can.close)
     # Discovery goes on while the kernels are loaded.
+    joined_at = platform.clock.monotonic_ns() / 1e9
     transport = open_transport(platform, settings.domain_id, dds, NAME)
     stack.callback(transport.close)
     prepare_kernels()
     follower = TrajectoryFollower(parameters)
-    node = ControllerNode(platform, transport, follower, parameters.node, outputs=())
+    node = ControllerNode(
+        platform,
+        transport,
+        follower,
+        parameters,
+        outputs=(),
+        has_ramp=not settings.mode.uses_dds,
+        joined_at=joined_at,
+    )
     node.outputs = can.outputs(node)
     _drive(run, node, follower.trace, can, start)
 

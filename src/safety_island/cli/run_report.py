@@ -11,6 +11,7 @@ from safety_island.cli.run_can import CanSide
 from safety_island.control.records import Records
 from safety_island.control.status import LongitudinalState, MpcStatus
 from safety_island.node import Outcome, TickReport
+from safety_island.node.input_set import InputSet
 from safety_island.node.inputs import Input
 from safety_island.platform import Clock, Logger
 
@@ -23,7 +24,7 @@ class Observed(Protocol):
 
     clock: Clock
     logger: Logger
-    inputs: tuple[Input, ...]
+    inputs: InputSet
 
 
 class RunReport:
@@ -61,7 +62,7 @@ class RunReport:
         if report.published:
             self._take_published(report)
         if self._lines is not None:
-            ages = sample_ages(self._node.inputs, self._node.clock.wall_ns())
+            ages = sample_ages(self._node.inputs.items, self._node.clock.wall_ns())
             values = tick_values(report, self._trace, ages)
             if self._can is not None:
                 values["can"] = self._can.take()

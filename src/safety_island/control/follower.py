@@ -77,6 +77,8 @@ class TrajectoryFollower:
         self._cells = {name: self.inputs[name] for name in INPUTS.names}
         self._pose = self.inputs.view(np.float64)[:_POSE_AND_SPEED]
         self._missing = set(INPUT_NAMES)
+        self._is_enabled = False
+        self._is_allowed = True
         self._has_path = False
         self._params = pack_parameters(parameters)
         self._lateral = new_lateral_state(parameters)
@@ -173,9 +175,16 @@ class TrajectoryFollower:
         if not 0 <= mode <= 255:
             return Refusal.OUT_OF_RANGE
         self._cells["mode"][0] = mode
-        self._cells["enabled"][0] = enabled
+        self._is_enabled = enabled
+        self._cells["enabled"][0] = enabled and self._is_allowed
         self._missing.discard("operation mode")
         return Refusal.ACCEPTED
+
+    def allow_control(self, allowed: bool) -> None:
+        """Say whether commands are followed; if not, the controllers run as in manual mode."""
+        if allowed is not self._is_allowed:
+            self._is_allowed = allowed
+            self._cells["enabled"][0] = self._is_enabled and allowed
 
     def missing(self) -> tuple[str, ...]:
         """Names of the inputs that were never accepted, in the order of INPUT_NAMES."""

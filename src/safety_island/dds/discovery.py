@@ -47,11 +47,17 @@ class Endpoints:
         self._own = participant.guid.bytes
         self._reader = BuiltinDataReader(participant, kind)
         self._known: dict[bytes, RemoteEndpoint] = {}
+        self._changes = 0
 
     def on(self, topic: str) -> list[RemoteEndpoint]:
         """Return the live endpoints on a ROS topic, oldest first."""
         self._refresh()
         return [endpoint for endpoint in self._known.values() if endpoint.topic == topic]
+
+    def changes(self) -> int:
+        """Count what came, changed or went so far."""
+        self._refresh()
+        return self._changes
 
     def close(self) -> None:
         """Stop listening to discovery."""
@@ -60,6 +66,7 @@ class Endpoints:
     def _refresh(self) -> None:
         while True:
             events = binding.take_endpoints(self._reader._ref, _BATCH)
+            self._changes += len(events)
             for event in events:
                 self._note(event)
             if len(events) < _BATCH:

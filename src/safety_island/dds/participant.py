@@ -108,6 +108,18 @@ class Participant:
         """Return the subscriptions of other participants on a ROS topic, whatever their type."""
         return self._found[SUBSCRIPTIONS].on(topic)
 
+    needs_discovery = True
+    """It takes some time to find the others in a domain."""
+
+    def endpoint_changes(self) -> int:
+        """Count the publishers of others that came, changed or went so far; cheap to ask."""
+        return self._found[PUBLICATIONS].changes()
+
+    def writers(self, topic: str, type_name: str) -> frozenset[bytes]:
+        """Return the live publishers of other participants on a ROS topic, by their GUIDs."""
+        found = self.publications(topic)
+        return frozenset(endpoint.guid for endpoint in found if endpoint.type_name == type_name)
+
     def mismatches(self) -> list[str]:
         """Say, one line each, which remote endpoints on our topics do not match and why."""
         found = []

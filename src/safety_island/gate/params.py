@@ -10,7 +10,7 @@ from safety_island.parameter import parameter
 
 def _age(name: str) -> Any:
     doc = f"Age of the {name} at which the output ends."
-    return parameter("s", doc, 0.01, 60.0, key=f"gate.age_limit.{name}")
+    return parameter("s", doc, 0.01, 3600.0, key=f"gate.age_limit.{name}")
 
 
 @dataclass(frozen=True)

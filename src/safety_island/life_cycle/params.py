@@ -27,9 +27,10 @@ class LifeCycleParams:
     )
     stall_limit: float = parameter(
         "s",
-        "Gap between two ticks, or sleep of the machine, after which the island starts anew.",
+        "Beyond one period: gap between two ticks, or sleep of the machine, after which the island"
+        " starts anew.",
         0.01,
-        60.0,
+        3600.0,
         key="life_cycle.stall_limit",
     )
     fault_ticks: int = parameter(

@@ -6,6 +6,7 @@ import math
 from typing import NamedTuple
 
 from safety_island.control.records import Records
+from safety_island.life_cycle.ramp import Motion
 from safety_island.messages.outputs import Control
 from safety_island.messages.wire import NANOSECONDS, Time
 
@@ -40,6 +41,11 @@ class Computed(NamedTuple):
         own = to_time(stamp, wall_offset_ns)
         other = own if longitudinal_stamp == stamp else to_time(longitudinal_stamp, wall_offset_ns)
         return Control(own, other, angle, rate, velocity, acceleration, 0.0, has_rate, True, False)
+
+
+def substitute(motion: Motion, now: float) -> Computed:
+    """Return a command of the life cycle as if the controllers had computed it at ``now`` [s]."""
+    return Computed(now, now, *motion, is_defined_steering_tire_rotation_rate=True)
 
 
 def computed(record: Records) -> Computed:

@@ -4,23 +4,40 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from safety_island.control.params import NodeParams
-from safety_island.control.status import MpcStatus
 from safety_island.dds import topics
+from safety_island.life_cycle.life_cycle import Facts, LifeCycle
+from safety_island.life_cycle.ramp import Motion
+from safety_island.life_cycle.reason import Reason
+from safety_island.life_cycle.state import State
+from safety_island.life_cycle.transition import Life
 from safety_island.messages.outputs import Control
 from safety_island.messages.wire import Time
-from safety_island.node.command import computed
+from safety_island.node.command import Computed, substitute
+from safety_island.node.command_check import Checked, check
+from safety_island.node.controllers import NO_COMMAND, Controllers, Ran
+from safety_island.node.explain import explain
 from safety_island.node.follower import Follower
-from safety_island.node.inputs import INPUTS, Input
+from safety_island.node.identity import Identity
+from safety_island.node.input_set import Blocked, InputSet
 from safety_island.node.node import Node
 from safety_island.node.outputs import ControlTopic, Output, ProcessingTime
 from safety_island.node.report import Outcome, TickReport, describe
 from safety_island.node.transport import Transport
+from safety_island.params import IslandParameters
 from safety_island.platform.interfaces import Platform, Tick
 
 NAME = "safety_island"
 ON_TIME = Tick(0, 0, 0)
 _NO_TIMES = (0, 0)
+_SENDS = (State.READY, State.ACTIVE)
+_SUBSTITUTES = (State.HOLD, State.STOP)
+_ALARMING = (State.HOLD, State.STOP, State.SILENT)
+_NOT_BLOCKED = Blocked(Reason.NONE)
+_OUTCOMES = {
+    Reason.WAITING_FOR_INPUT: Outcome.WAITING_FOR_INPUT,
+    Reason.NO_TRAJECTORY: Outcome.NOT_READY,
+}
+"""What a tick without a command is called; FORBIDDEN for every other reason."""
 
 
 class ControllerNode(Node):
@@ -35,16 +52,26 @@ class ControllerNode(Node):
         platform: Platform,
         transport: Transport,
         follower: Follower,
-        parameters: NodeParams,
+        parameters: IslandParameters,
         outputs: Sequence[Output] | None = None,
+        *,
+        has_ramp: bool = False,
+        joined_at: float | None = None,
     ) -> None:
-        """Enter the topics. ``outputs``: where commands go; None: to ``control_cmd`` alone."""
+        """Enter the topics. ``outputs``: where commands go; None: to ``control_cmd`` alone.
+
+        ``has_ramp``: the vehicle hears only CAN, so a stop is declared before silence;
+        ``joined_at`` [s, monotonic]: when the transport entered its domain (None: now).
+        """
         super().__init__(NAME, platform, transport)
+        if joined_at is None:
+            joined_at = self.clock.monotonic_ns() / 1e9
         self.parameters = parameters
         self.follower = follower
-        self.inputs = tuple(
-            Input(spec, self.subscription(spec.topic), follower, self.logger) for spec in INPUTS
-        )
+        self.controllers = Controllers(follower, self.clock, self.logger)
+        self.inputs = InputSet(transport, follower, self.logger, parameters.gate)
+        self.identity = Identity(transport, self.inputs, self.logger, parameters, joined_at)
+        self.life_cycle = LifeCycle(parameters.life_cycle, parameters.node.ctrl_period, has_ramp)
         self.outputs = tuple(outputs) if outputs is not None else (self.control_topic(),)
         self.report: TickReport | None = None
         """The last tick."""
@@ -55,15 +82,14 @@ class ControllerNode(Node):
             for topic in (topics.LATERAL_TIME, topics.LONGITUDINAL_TIME)
         )
         self._ticks = 0
-        self._is_complete = False
-        self._stamp = follower.command["stamp"]
-        """Of the lateral part: the kernels leave it to their caller."""
+        self._last_tick: float | None = None
         self._command: Control | None = None
-        self._spent_ns = _NO_TIMES
 
     def control_topic(self) -> ControlTopic:
         """Make the output that publishes ``control_cmd``."""
-        return ControlTopic(topics.CONTROL, self.publisher(topics.CONTROL), self.logger)
+        publisher = self.publisher(topics.CONTROL)
+        self.identity.own.add(publisher.guid)
+        return ControlTopic(topics.CONTROL, publisher, self.logger)
 
     def on_tick(self, due: Tick) -> None:
         """Do one tick of ``run``."""
@@ -78,27 +104,32 @@ class ControllerNode(Node):
         start_ns = self.clock.monotonic_ns()
         if now is None:
             now = start_ns / 1e9
-        refused, self._command, self._spent_ns = 0, None, _NO_TIMES
+        self._command, self.controllers.spent_ns = None, _NO_TIMES
+        refused, blocked = 0, _NOT_BLOCKED
         try:
-            for item in self.inputs:
-                refused += not item.take(now)
-            outcome, detail = self._control(now, start_ns)
+            refused = self._take(now, due.skipped)
+            blocked = self._blocked(now)
+            outcome, detail = self._control(blocked, now, start_ns)
         except Exception as error:  # a tick may fail, the process may not
             outcome, detail = Outcome.FAULT, describe(error)
             self.logger.error("the tick failed: %s", detail, throttled=True)
+            self.life_cycle.fault()
         self._ticks += 1
-        lateral_ns, longitudinal_ns = self._spent_ns
+        self._last_tick = now
+        lateral_ns, longitudinal_ns = self.controllers.spent_ns
         self.report = TickReport(
             self._ticks,
             now,
             outcome,
             detail,
+            self.life_cycle.life,
+            blocked.subject,
             due.lateness_ns / 1e9,
             due.skipped,
             (self.clock.monotonic_ns() - start_ns) / 1e9,
             lateral_ns / 1e9,
             longitudinal_ns / 1e9,
-            tuple([now - item.accepted_at for item in self.inputs]),
+            tuple([now - item.accepted_at for item in self.inputs.items]),
             refused,
             self._command,
         )
@@ -110,57 +141,97 @@ class ControllerNode(Node):
             output.close()
         super().close()
 
-    def _control(self, now: float, start_ns: int) -> tuple[Outcome, str]:
-        """From inputs that are taken to a command that is sent."""
-        if not self._is_complete and (missing := self._missing()):
-            return Outcome.WAITING_FOR_INPUT, missing
-        if not self.follower.is_ready() or not self._run_controllers(now):
-            self.logger.info("Waiting for a trajectory that can be followed", throttled=True)
-            return Outcome.NOT_READY, "no trajectory that can be followed"
-        outcome, detail = self._publish(now, start_ns)
-        stamp = Time.from_nanoseconds(self.clock.wall_ns())
-        for topic, spent_ns in zip(self._times, self._spent_ns, strict=True):
-            topic.send(stamp, spent_ns / 1e9)
-        return outcome, detail
+    def _take(self, now: float, skipped: int) -> int:
+        """Take what came since the last tick; what waited while the process stood still is old."""
+        if self.life_cycle.begin(now, self.clock.slept_ns() / 1e9, skipped):
+            self.logger.warning("the process stood still: it begins anew", throttled=True)
+            self.inputs.drop()
+        self.identity.look(now)
+        return self.inputs.take(now, now if self._last_tick is None else self._last_tick)
 
-    def _missing(self) -> str:
-        """Name the inputs without which there is no tick, and log each; empty when none."""
-        missing = self.follower.missing()
-        self._is_complete = not missing
-        for name in missing:
+    def _blocked(self, now: float) -> Blocked:
+        """Return what forbids to send, before the controllers are asked."""
+        for name in self.inputs.missing():
             self.logger.info("Waiting for %s data", name, throttled=True, site=f"input {name}")
-        return ", ".join(missing)
+        if reason := self.identity.blocked(now):
+            return Blocked(reason)
+        return self.inputs.blocked(now)
 
-    def _run_controllers(self, now: float) -> bool:
-        """Run lateral, then longitudinal, then hand over; False when there is no new command."""
-        begin_ns = self.clock.monotonic_ns()
-        status = self.follower.run_lateral(now)
-        if status == MpcStatus.NO_REFERENCE:
-            return False
-        self._stamp[0] = now
-        middle_ns = self.clock.monotonic_ns()
-        if self.follower.run_longitudinal(now) < 0:
-            return False
-        self._spent_ns = (middle_ns - begin_ns, self.clock.monotonic_ns() - middle_ns)
-        self.follower.sync()
-        if status != MpcStatus.SOLVED:
-            reason = MpcStatus(status).name.lower().replace("_", " ")
-            self.logger.warning("no new steering angle: %s", reason, throttled=True, site="mpc")
-        return True
+    def _control(self, blocked: Blocked, now: float, start_ns: int) -> tuple[Outcome, str]:
+        """From inputs that are taken to a command that is sent."""
+        disengaged = self.inputs.disengaged()
+        self.follower.allow_control(self.life_cycle.controls and not disengaged)
+        ran = NO_COMMAND if blocked.reason else self.controllers.run(now)
+        if not blocked.reason and ran is NO_COMMAND:
+            self.logger.info("Waiting for a trajectory that can be followed", throttled=True)
+            blocked = Blocked(Reason.NO_TRAJECTORY)
+        checked = self._check(ran, now, start_ns)
+        facts = Facts(
+            blocked.reason,
+            disengaged,
+            self.inputs.speed(),
+            failed=bool(ran.fault),
+            unsolved=ran.unsolved,
+            refused=checked.refusal,
+        )
+        before = self.life_cycle.state
+        life = self.life_cycle.judge(facts, now)
+        if life.state is not before:
+            self._tell(life, blocked.subject)
+        if ran.command is not None:
+            self._tell_times()
+        return self._send(ran, checked, now)
 
-    def _publish(self, now: float, start_ns: int) -> tuple[Outcome, str]:
-        """Refuse what is stale or not finite; else give the command to every output."""
-        result, now_ns = computed(self.follower.command), self.clock.monotonic_ns()
-        oldest = now + (now_ns - start_ns) / 1e9 - self.parameters.timeout_thr_sec
-        if side := result.stale_side(oldest):
-            self.logger.error("refused a stale %s command", side, throttled=True)
-            return Outcome.STALE, side
-        if not result.is_finite():
-            self.logger.error("refused a command that is not finite: %s", result, throttled=True)
-            return Outcome.NOT_FINITE, "command"
-        self._command = command = result.to_control(self.clock.wall_ns() - now_ns)
+    def _check(self, ran: Ran, now: float, start_ns: int) -> Checked:
+        """Refuse what is stale or not finite."""
+        if ran.command is None:
+            return Checked(None, Reason.NONE, Outcome.FAULT, ran.fault)
+        late_s = (self.clock.monotonic_ns() - start_ns) / 1e9
+        checked = check(ran.command, now + late_s - self.parameters.node.timeout_thr_sec)
+        if checked.refusal:
+            name = checked.outcome.name.lower().replace("_", " ")
+            self.logger.error("refused a command: %s %s", name, checked.detail, throttled=True)
+        return checked
+
+    def _send(self, ran: Ran, checked: Checked, now: float) -> tuple[Outcome, str]:
+        """Send what the state lets out."""
+        life = self.life_cycle.life
+        if life.state in _SUBSTITUTES:
+            motion = self.life_cycle.motion()
+            assert motion is not None
+            return self._publish(substitute(motion, now), Outcome.SUBSTITUTED)
+        if life.state not in _SENDS:
+            reason = _OUTCOMES.get(life.reason, Outcome.FORBIDDEN)
+            return reason, self._detail(life.reason)
+        if checked.command is None:
+            return checked.outcome, checked.detail
+        outcome = self._publish(checked.command, Outcome.PUBLISHED)
+        motion = Motion._make(checked.command[2:6])
+        self.life_cycle.sent(motion, outcome[0] is Outcome.PUBLISHED, now)
+        return outcome
+
+    def _publish(self, result: Computed, sent: Outcome) -> tuple[Outcome, str]:
+        """Give a command to every output."""
+        offset_ns = self.clock.wall_ns() - self.clock.monotonic_ns()
+        self._command = command = result.to_control(offset_ns)
         stamp_ns = command.stamp.nanoseconds
-        sent = [output.send(command, stamp_ns) for output in self.outputs]
-        if any(sent):
-            return Outcome.PUBLISHED, ""
+        results = [output.send(command, stamp_ns) for output in self.outputs]
+        if any(results):
+            return sent, ""
         return Outcome.OUTPUT_FAILED, ", ".join(output.name for output in self.outputs)
+
+    def _tell_times(self) -> None:
+        stamp = Time.from_nanoseconds(self.clock.wall_ns())
+        for topic, spent_ns in zip(self._times, self.controllers.spent_ns, strict=True):
+            topic.send(stamp, spent_ns / 1e9)
+
+    def _detail(self, reason: Reason) -> str:
+        if reason is Reason.WAITING_FOR_INPUT:
+            return ", ".join(self.inputs.missing())
+        return reason.name.lower().replace("_", " ")
+
+    def _tell(self, life: Life, subject: int) -> None:
+        """Log a change of state, once for each."""
+        meaning = explain(life.reason, subject)
+        log = self.logger.warning if life.state in _ALARMING else self.logger.info
+        log("state %s: %s", life.state.name, meaning)

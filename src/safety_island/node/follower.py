@@ -50,8 +50,8 @@ class Follower(InputFollower, Protocol):
     def command(self) -> Records:
         """COMMAND record, shape (1,), always the same memory; stamps on the clock of ``now``."""
 
-    def missing(self) -> tuple[str, ...]:
-        """Names of the inputs of which none was accepted yet."""
+    def allow_control(self, allowed: bool) -> None:
+        """Say whether commands are followed; if not, the controllers run as in manual mode."""
 
     def is_ready(self) -> bool:
         """Whether both controllers can run."""

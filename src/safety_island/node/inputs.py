@@ -1,7 +1,8 @@
-"""The five inputs of the controller node: how each is decoded and handed to the controllers.
+"""The five inputs of the controller node: how each is decoded, judged and handed on.
 
-The way of a sample is: newest of its topic, decode, offer. A later gate stands between the last
-two; whatever refuses a sample is counted here by its reason, and leaves the controllers untouched.
+The way of a sample: of those that came since the last tick the newest, decode, gate (publisher,
+stamp, frame), offer (every value). Whatever refuses a sample is counted here by its reason, and
+leaves the controllers as they were.
 """
 
 from __future__ import annotations
@@ -14,16 +15,19 @@ from typing import Any, NamedTuple
 from safety_island.control.status import Refusal
 from safety_island.dds import topics
 from safety_island.dds.topics import TopicEntry
+from safety_island.gate.content import ContentGate
+from safety_island.gate.newest import newest_first, overtaken
+from safety_island.gate.params import GateParams
+from safety_island.gate.reason import SampleReason
+from safety_island.gate.stamps import StampGate
+from safety_island.gate.writers import Writers
 from safety_island.messages import inputs as codec
 from safety_island.messages.errors import DecodeError
 from safety_island.messages.trajectory import Trajectory, decode_trajectory
 from safety_island.node.follower import InputFollower
 from safety_island.node.report import describe
-from safety_island.node.transport import Subscription
+from safety_island.node.transport import Sample, Subscription
 from safety_island.platform.interfaces import Logger
-
-FAULT = "fault"
-"""Reason of a refusal that no sample should be able to cause."""
 
 
 class InputSpec(NamedTuple):
@@ -34,7 +38,9 @@ class InputSpec(NamedTuple):
     topic: TopicEntry
     decoder: Callable[[InputFollower], Callable[[bytes], Any]]
     """Makes the function that decodes its samples."""
+    check: Callable[[ContentGate, Any, bytes, StampGate], SampleReason | None]
     offer: Callable[[InputFollower, Any], Refusal]
+    age_limit_s: Callable[[GateParams], float] = lambda params: math.inf
 
 
 def _plain(decode: Callable[[bytes], Any]) -> Callable[[InputFollower], Callable[[bytes], Any]]:
@@ -68,19 +74,43 @@ def _offer_operation_mode(follower: InputFollower, message: codec.OperationMode)
 
 
 INPUTS = (
-    InputSpec("trajectory", topics.TRAJECTORY, _into_the_follower, _offer_trajectory),
-    InputSpec("odometry", topics.ODOMETRY, _plain(codec.decode_odometry), _offer_odometry),
-    InputSpec("steering", topics.STEERING, _plain(codec.decode_steering), _offer_steering),
+    InputSpec(
+        "trajectory",
+        topics.TRAJECTORY,
+        _into_the_follower,
+        ContentGate.trajectory,
+        _offer_trajectory,
+        lambda params: params.trajectory_age_limit,
+    ),
+    InputSpec(
+        "odometry",
+        topics.ODOMETRY,
+        _plain(codec.decode_odometry),
+        ContentGate.odometry,
+        _offer_odometry,
+        lambda params: params.odometry_age_limit,
+    ),
+    InputSpec(
+        "steering",
+        topics.STEERING,
+        _plain(codec.decode_steering),
+        ContentGate.anything,
+        _offer_steering,
+        lambda params: params.steering_age_limit,
+    ),
     InputSpec(
         "acceleration",
         topics.ACCELERATION,
         _plain(codec.decode_acceleration),
+        ContentGate.acceleration,
         _offer_acceleration,
+        lambda params: params.acceleration_age_limit,
     ),
     InputSpec(
         "operation mode",
         topics.OPERATION_MODE,
         _plain(codec.decode_operation_mode),
+        ContentGate.anything,
         _offer_operation_mode,
     ),
 )
@@ -88,50 +118,106 @@ INPUTS = (
 
 
 class Input:
-    """One input at work: its subscription, what became of its samples, and its age."""
+    """One input at work: its subscription, what became of its samples, and its age.
+
+    The moment of receipt lies between two ticks, and only the island's own clock counts, so an age
+    runs from the earlier tick: the output ends in time even when the sample came at once after it.
+    """
 
     def __init__(
-        self, spec: InputSpec, subscription: Subscription, follower: InputFollower, logger: Logger
+        self,
+        spec: InputSpec,
+        subscription: Subscription,
+        follower: InputFollower,
+        logger: Logger,
+        params: GateParams,
     ) -> None:
         self.name = spec.name
         self.topic = spec.topic.name
         self.subscription = subscription
+        self.stamps = StampGate(spec.age_limit_s(params))
+        self.writers = Writers(params.writer_changes)
+        self.age_limit_s = spec.age_limit_s(params)
         self.accepted = 0
-        self.refused: Counter[str] = Counter()
+        self.superseded = 0
+        """Samples passed over for a newer one."""
+        self.overtaken = 0
+        """Samples that arrived after a newer one."""
+        self.refused: Counter[SampleReason] = Counter()
         """Samples refused, by reason."""
         self.accepted_at = -math.inf
-        """Monotonic time [s] of the tick that accepted the newest sample in force."""
+        """Monotonic time [s] before which the sample in force was not received."""
         self.writer_guid = b""
         """Writer of the sample that was taken last."""
         self.sent_ns = 0
         """When that sample was written, by the writer's wall clock [ns]; only for reports."""
+        self.stamp_ns = 0
+        """Stamp of the sample in force [ns]."""
+        self.message: Any = None
+        """The sample in force, decoded."""
         self._decode = spec.decoder(follower)
+        self._content = ContentGate(params)
+        self._check = spec.check
         self._offer = spec.offer
         self._follower = follower
         self._logger = logger
 
-    def take(self, now: float) -> bool:
-        """Take the newest sample and offer it; False when one was refused."""
-        sample = self.subscription.take_newest()
-        if sample is None:
-            return True
-        self.writer_guid = sample.writer_guid
-        self.sent_ns = sample.source_timestamp_ns
+    def take(self, now: float, since: float) -> int:
+        """Take what came after ``since`` [s], the tick before; return how many were refused."""
+        samples = self.subscription.take_all()
+        if not samples:
+            return 0
+        if len(samples) > 1:
+            self.superseded += len(samples) - 1
+            self.overtaken += overtaken(samples)
+        refused = 0
+        for sample in newest_first(samples):
+            if self._accept(sample, now):
+                self.accepted_at = since
+                break
+            refused += 1
+        return refused
+
+    def drop(self) -> None:
+        """Drop what waits to be taken, and forget when the sample in force came."""
+        self.subscription.take_all()
+        self.accepted_at = -math.inf
+
+    def age_s(self, now: float) -> float:
+        """Age of the sample in force [s]; infinite when there is none."""
+        return now - self.accepted_at
+
+    def _accept(self, sample: Sample, now: float) -> bool:
+        data = sample.data
+        self.writer_guid, self.sent_ns = sample.writer_guid, sample.source_timestamp_ns
         try:
-            verdict = self._offer(self._follower, self._decode(sample.data))
+            message = self._decode(data)
+            reason = self._judge(message, sample, now)
         except DecodeError as error:
-            return self._refuse(error.reason, str(error))
+            return self._refuse(SampleReason[error.reason.name], str(error))
         except Exception as error:  # a fault of ours must not let one topic stop the ticks
-            return self._refuse(FAULT, describe(error))
-        if verdict:
-            reason = Refusal(verdict).name.lower()
-            return self._refuse(reason, reason.replace("_", " "))
+            return self._refuse(SampleReason.FAULT, describe(error))
+        if reason is not None:
+            return self._refuse(reason, reason.name.lower().replace("_", " "))
+        self.stamps.hold(message.stamp, data, now)
         self.accepted += 1
-        self.accepted_at = now
+        self.stamp_ns, self.message = message.stamp.nanoseconds, message
         return True
 
-    def _refuse(self, reason: str, detail: str) -> bool:
-        self.refused[str(reason)] += 1
-        site = f"{self.topic} {reason}"
+    def _judge(self, message: Any, sample: Sample, now: float) -> SampleReason | None:
+        if not self.writers.takes(sample.writer_guid):
+            return SampleReason.OTHER_PUBLISHER
+        reason = self.stamps.judge(message.stamp, sample.data, now)
+        if reason is not None:
+            return reason
+        reason = self._check(self._content, message, sample.data, self.stamps)
+        if reason is not None:
+            return reason
+        verdict = self._offer(self._follower, message)
+        return SampleReason[verdict.name] if verdict else None
+
+    def _refuse(self, reason: SampleReason, detail: str) -> bool:
+        self.refused[reason] += 1
+        site = f"{self.topic} {reason.name}"
         self._logger.warning("refused a sample: %s", detail, throttled=True, site=site)
         return False

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections import deque
+from collections.abc import Callable, Sequence
+from functools import partial
 from typing import NamedTuple
 
 from safety_island.dds.names import dds_topic_name
-from safety_island.dds.qos import Qos
+from safety_island.dds.qos import INPUT_DEPTH, Qos
 from safety_island.errors import ConfigurationError
 from safety_island.messages.registry import lookup
 from safety_island.platform.interfaces import Clock
@@ -20,38 +23,57 @@ class MemorySample(NamedTuple):
 
 
 class MemorySubscription:
-    """Holds the newest message until it is taken."""
+    """Holds the newest messages until they are taken."""
 
     def __init__(self) -> None:
         self.received = 0
         self.superseded = 0
         self.invalid = 0
-        self._newest: MemorySample | None = None
+        self._waiting: deque[MemorySample] = deque(maxlen=INPUT_DEPTH)
 
     def put(self, sample: MemorySample) -> None:
-        """Receive a message; one that was not taken yet is superseded."""
+        """Receive a message."""
         self.received += 1
-        if self._newest is not None:
-            self.superseded += 1
-        self._newest = sample
+        self._waiting.append(sample)
 
     def take_newest(self) -> MemorySample | None:
-        """Return the newest message since the last call; None when there is none."""
-        sample = self._newest
-        self._newest = None
-        return sample
+        """Return the newest message since the last call, None when there is none; drop others."""
+        samples = self.take_all()
+        if not samples:
+            return None
+        self.superseded += len(samples) - 1
+        return samples[-1]
+
+    def take_all(self) -> Sequence[MemorySample]:
+        """Return the messages since the last call in the order of their arrival."""
+        if not self._waiting:
+            return ()
+        samples = tuple(self._waiting)
+        self._waiting.clear()
+        return samples
 
 
 class MemoryPublisher:
     """Hands its messages to every subscription of the topic, at once and without loss."""
 
-    def __init__(self, clock: Clock, readers: list[MemorySubscription], guid: bytes) -> None:
+    def __init__(
+        self,
+        clock: Clock,
+        readers: list[MemorySubscription],
+        guid: bytes,
+        on_close: Callable[[MemoryPublisher], None],
+    ) -> None:
         self.guid = guid
         self.failed = 0
         self.last_error = ""
         self.last: MemorySample | None = None
         self._clock = clock
         self._readers = readers
+        self._on_close = on_close
+
+    def close(self) -> None:
+        """Leave the topic."""
+        self._on_close(self)
 
     def write(self, data: bytes) -> bool:
         """Send one message; its time stamp is the virtual wall clock. Always possible."""
@@ -65,6 +87,7 @@ class _Topic:
     def __init__(self, type_name: str) -> None:
         self.type_name = type_name
         self.readers: list[MemorySubscription] = []
+        self.writers: frozenset[bytes] = frozenset()
         self.latched: list[MemoryPublisher] = []
 
 
@@ -79,12 +102,18 @@ class MemoryDomain:
         self._clock = clock
         self._topics: dict[str, _Topic] = {}
         self._writers = 0
+        self._changes = 0
+
+    needs_discovery = False
 
     def publisher(self, topic: str, type_name: str, qos: Qos) -> MemoryPublisher:
         """Make a publisher; a transient-local one also serves subscriptions that come later."""
         found = self._topic(topic, type_name)
         self._writers += 1
-        writer = MemoryPublisher(self._clock, found.readers, self._writers.to_bytes(16, "big"))
+        guid = self._writers.to_bytes(16, "big")
+        writer = MemoryPublisher(self._clock, found.readers, guid, partial(self._forget, found))
+        found.writers |= {guid}
+        self._changes += 1
         if qos.durability == "transient_local":
             found.latched.append(writer)
         return writer
@@ -98,6 +127,20 @@ class MemoryDomain:
             for sample in [writer.last for writer in found.latched if writer.last is not None]:
                 reader.put(sample)
         return reader
+
+    def endpoint_changes(self) -> int:
+        """Count the publishers that came or went so far."""
+        return self._changes
+
+    def writers(self, topic: str, type_name: str) -> frozenset[bytes]:
+        """Return the publishers on a topic, of every node in this domain."""
+        return self._topics[topic].writers if topic in self._topics else frozenset()
+
+    def _forget(self, found: _Topic, writer: MemoryPublisher) -> None:
+        found.writers -= {writer.guid}
+        if writer in found.latched:
+            found.latched.remove(writer)
+        self._changes += 1
 
     def close(self) -> None:
         """Memory needs no leaving; others may still use the domain."""

@@ -6,6 +6,7 @@ from enum import IntEnum
 from pathlib import PurePath
 from typing import NamedTuple
 
+from safety_island.life_cycle.transition import Life
 from safety_island.messages.outputs import Control
 
 
@@ -26,6 +27,12 @@ class Outcome(IntEnum):
     """No output could take the command."""
     FAULT = 6
     """The tick ended with an exception: a fault of the program."""
+    REFUSED = 7
+    """The guard refused the command."""
+    FORBIDDEN = 8
+    """The life cycle lets nothing out."""
+    SUBSTITUTED = 9
+    """The last command or one of the stop ramp went out in place of the controllers'."""
 
 
 class TickReport(NamedTuple):
@@ -38,6 +45,10 @@ class TickReport(NamedTuple):
     outcome: Outcome
     detail: str
     """What was missing, stale or wrong; empty when published."""
+    life: Life
+    """State and reason after the tick."""
+    subject: int
+    """The input that the reason is about, NO_SUBJECT for none."""
     lateness_s: float
     """How long after its place on the grid the tick started."""
     skipped: int

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Protocol
 
 from safety_island.dds.config import DdsConfig
@@ -27,8 +28,9 @@ class Sample(Protocol):
 
 
 class Publisher(Protocol):
-    """Where serialized messages of one topic go out."""
+    """Where serialized messages of one topic go out; ``guid`` is its identity."""
 
+    guid: bytes
     failed: int
     last_error: str
 
@@ -37,14 +39,17 @@ class Publisher(Protocol):
 
 
 class Subscription(Protocol):
-    """Where the newest message of one topic is taken; older ones are dropped and counted."""
+    """Where the messages of one topic are taken."""
 
     received: int
     superseded: int
     invalid: int
 
     def take_newest(self) -> Sample | None:
-        """Return the newest message since the last call; None when there is none."""
+        """Return the newest message since the last call, None when there is none; drop others."""
+
+    def take_all(self) -> Sequence[Sample]:
+        """Return the messages since the last call in the order of their arrival."""
 
 
 class Transport(Protocol):
@@ -55,6 +60,18 @@ class Transport(Protocol):
 
     def subscription(self, topic: str, type_name: str, qos: Qos) -> Subscription:
         """Make a subscription."""
+
+    needs_discovery: bool
+    """Whether it takes time to find the others in the domain."""
+
+    def endpoint_changes(self) -> int:
+        """Count the publishers and subscriptions of others that came or went so far."""
+
+    def writers(self, topic: str, type_name: str) -> frozenset[bytes]:
+        """Return the publishers of others on a topic that are alive, by their GUIDs.
+
+        A transport that is shared by several nodes counts all of them.
+        """
 
     def close(self) -> None:
         """Leave the domain."""

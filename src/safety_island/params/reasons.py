@@ -30,6 +30,11 @@ REASONS = {
     ),
     "pass_filters_above_nyquist": "a cutoff that cannot act is a mistake",
     "delay_compensation_time": "the firmware's, and that of the controller's own package",
+    "gate.age_limit.trajectory": "nine missed trajectories of a planner at 10 Hz",
+    "gate.age_limit.odometry": "ten missed samples of a localization at 20 Hz",
+    "gate.age_limit.steering": "the same",
+    "gate.age_limit.acceleration": "the same",
+    "life_cycle.stall_limit": "what waited meanwhile is too old",
     "gate.min_trajectory_points": "fewer cannot be followed by the MPC",
     "life_cycle.mpc_failure_time": "a steering angle that is only held is no control",
     "correct_reverse_signs": (

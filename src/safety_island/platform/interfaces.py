@@ -54,6 +54,9 @@ class Clock(Protocol):
     def now(self) -> float:
         """Wall clock [s since 1970], as a message stamp in seconds."""
 
+    def slept_ns(self) -> int:
+        """Time [ns] for which the machine was suspended; the monotonic clock stood still."""
+
     def set_wall_offset_ns(self, offset_ns: int | None) -> None:
         """Let the wall clock be the monotonic one plus this; None: the machine's own wall clock."""
 

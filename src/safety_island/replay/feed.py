@@ -45,13 +45,15 @@ class Replay:
         self.platform = make(LogConfig(level=LogLevel.NONE))
         domain = MemoryDomain(self.platform.clock)
         self.follower = TrajectoryFollower(parameters)
-        self.node = ControllerNode(self.platform, domain, self.follower, parameters.node)
+        self.node = ControllerNode(self.platform, domain, self.follower, parameters)
         self._write = {
             topic.key: domain.publisher(topic.name, topic.type_name, topic.qos).write
             for topic in topics.INPUTS
         }
-        # The firmware takes the operation mode as received from the beginning.
-        self._play_mode(_STOP, True)
+        # The firmware takes the operation mode as received from the beginning, and nothing else.
+        start = float(run.state["t"][0]) - parameters.node.ctrl_period
+        self._play_mode(Time.from_seconds(start), _STOP, True)
+        self.node.tick(start)
 
     def tick(self, tick: int) -> Records | None:
         """Deliver the messages of one row and do the tick; the command, when one was published."""
@@ -77,10 +79,10 @@ class Replay:
             acceleration = codec.Acceleration(stamp, "base_link", row["ax"], *(0.0,) * 5)
             self._write["acceleration"](codec.encode_acceleration(acceleration))
         if mask & OPERATION_MODE:
-            self._play_mode(int(row["mode"]), bool(row["enabled"]))
+            self._play_mode(stamp, int(row["mode"]), bool(row["enabled"]))
 
-    def _play_mode(self, mode: int, enabled: bool) -> None:
-        message = codec.OperationMode(Time(), mode, enabled)
+    def _play_mode(self, stamp: Time, mode: int, enabled: bool) -> None:
+        message = codec.OperationMode(stamp, mode, enabled)
         self._write["operation_mode"](codec.encode_operation_mode(message))
 
 

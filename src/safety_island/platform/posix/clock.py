@@ -25,3 +25,7 @@ class PosixClock:
     def set_wall_offset_ns(self, offset_ns: int | None) -> None:
         """Let the wall clock be the monotonic one plus this; the machine's clock is not touched."""
         self._offset_ns = offset_ns
+
+    def slept_ns(self) -> int:
+        """Time [ns] for which the machine was suspended since it booted."""
+        return time.clock_gettime_ns(time.CLOCK_BOOTTIME) - time.monotonic_ns()

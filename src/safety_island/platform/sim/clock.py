@@ -20,6 +20,7 @@ class SimClock:
     def __init__(self, start_ns: int = START_NS) -> None:
         self._now_ns = start_ns
         self._offset_ns = 0
+        self._slept_ns = 0
         self._actions: list[tuple[int, int, Callable[[], None]]] = []
         self._order = count()
 
@@ -34,6 +35,15 @@ class SimClock:
     def now(self) -> float:
         """Virtual wall clock [s]."""
         return self.wall_ns() / 1e9
+
+    def slept_ns(self) -> int:
+        """Time [ns] that ``sleep_ns`` made up."""
+        return self._slept_ns
+
+    def sleep_ns(self, duration_ns: int) -> None:
+        """Suspend the machine: only the wall clock goes on."""
+        self._slept_ns += duration_ns
+        self._offset_ns += duration_ns
 
     def set_wall_offset_ns(self, offset_ns: int | None) -> None:
         """Let the wall clock be the monotonic one plus this; None: plus nothing."""

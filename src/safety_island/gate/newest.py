@@ -1,0 +1,56 @@
+"""Which of the samples that came between two ticks is looked at."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from struct import Struct
+from typing import Protocol, TypeVar
+
+from safety_island.messages.wire import CDR_LE, HEADER_SIZE
+
+_STAMP = Struct("<iI")
+_SMALLEST = HEADER_SIZE + _STAMP.size
+
+TRIES = 3
+"""How many samples of one tick are looked at, the newest first, until one is accepted."""
+
+
+class Sample(Protocol):
+    """One received message."""
+
+    @property
+    def data(self) -> bytes:
+        """Serialized message that begins with a stamp."""
+
+
+S = TypeVar("S", bound=Sample)
+
+
+def newest_first(samples: Sequence[S]) -> Sequence[S]:
+    """Return at most TRIES samples in the order in which they are tried.
+
+    ``samples`` are in the order of arrival; the highest stamp comes first, of equal ones the last
+    arrival. What has no stamp that can be read comes last.
+    """
+    if len(samples) == 1:
+        return samples
+    arrival = range(len(samples))
+    order = sorted(arrival, key=lambda i: (_stamp(samples[i].data), i), reverse=True)
+    return [samples[i] for i in order[:TRIES]]
+
+
+def overtaken(samples: Sequence[S]) -> int:
+    """Count the samples that arrived after one with a higher stamp."""
+    highest, count = (-1, 0), 0
+    for sample in samples:
+        stamp = _stamp(sample.data)
+        count += stamp < highest
+        highest = max(highest, stamp)
+    return count
+
+
+def _stamp(data: bytes) -> tuple[int, int]:
+    if data[:2] != CDR_LE or len(data) < _SMALLEST:
+        return (-1, 0)
+    sec, nanosec = _STAMP.unpack_from(data, HEADER_SIZE)
+    return sec, nanosec

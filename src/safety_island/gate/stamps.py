@@ -1,0 +1,88 @@
+"""The stamps of one input, in the order of arrival: newer, older, standing still, delayed.
+
+A stamp is never trusted for an age: its clock may be wrong. It orders samples, and a change of its
+distance from the island's own clock tells that samples take longer than before.
+"""
+
+from __future__ import annotations
+
+import math
+
+from safety_island.gate.reason import SampleReason
+from safety_island.messages.wire import NANOSECONDS, Time
+
+BEGIN_ANEW_S = 10.0
+"""After this time [s] without a sample any stamp is taken: the sender's clock may have been set."""
+
+FORGET_RATE = 0.001
+"""Rate [s/s] at which a delay is forgotten: two clocks may drift apart by 1000 ppm at most."""
+
+STEP_BACK_SHARE = 0.5
+"""Share of the age limit for which older stamps must keep advancing until they count as a clock
+that was set back rather than as samples that were overtaken."""
+
+
+class StampGate:
+    """Judges each sample by its stamp; told the time [s, monotonic], reads no clock.
+
+    ``judge`` leaves everything as it was but the search for a clock that was set back; ``hold``
+    takes the judged sample over. ``delay_s`` [s] is how much longer the held sample took than the
+    quickest one; ``steps_back`` counts clocks that were set back.
+    """
+
+    def __init__(self, age_limit_s: float = math.inf) -> None:
+        self.steps_back = 0
+        self._limit_s = age_limit_s
+        self.forget()
+
+    def forget(self) -> None:
+        """Hold nothing: the next sample is taken whatever its stamp."""
+        self.delay_s = self._new_delay_s = 0.0
+        self._held = b""
+        self._held_ns = -1
+        self._held_at = -math.inf
+        self._older_ns = -1
+        self._older_since = math.inf
+
+    def judge(self, stamp: Time, data: bytes, now: float) -> SampleReason | None:
+        """Say why a sample is refused, None when its stamp is good."""
+        sec, nanosec = stamp
+        if sec < 0 or nanosec >= NANOSECONDS or not (sec or nanosec):
+            return SampleReason.BAD_STAMP
+        stamp_ns = sec * NANOSECONDS + nanosec
+        step_ns = stamp_ns - self._held_ns
+        if step_ns == 0:
+            same = data == self._held
+            return SampleReason.DUPLICATE if same else SampleReason.STAMP_STANDS_STILL
+        since_s = now - self._held_at
+        self._new_delay_s = 0.0
+        if since_s > BEGIN_ANEW_S:
+            return None
+        if step_ns < 0:
+            return self._judge_older(stamp_ns, now)
+        growth_s = since_s * (1.0 - FORGET_RATE) - step_ns * 1e-9
+        self._new_delay_s = max(0.0, self.delay_s + growth_s)
+        return SampleReason.DELAYED if self._new_delay_s > self._limit_s else None
+
+    def _judge_older(self, stamp_ns: int, now: float) -> SampleReason | None:
+        if stamp_ns <= self._older_ns or self._older_ns < 0:
+            self._older_since = now
+        self._older_ns = stamp_ns
+        if now - self._older_since < self._limit_s * STEP_BACK_SHARE:
+            return SampleReason.OLDER
+        self.steps_back += 1
+        return None
+
+    def repeats(self, data: bytes) -> bool:
+        """Whether a message with its stamp in front says just what the held one says."""
+        return data[_AFTER_STAMP:] == self._held[_AFTER_STAMP:]
+
+    def hold(self, stamp: Time, data: bytes, now: float) -> None:
+        """Take the sample that was judged last."""
+        self._held, self._held_ns, self._held_at = data, stamp.nanoseconds, now
+        self.delay_s = self._new_delay_s
+        self._older_ns = -1
+
+
+_AFTER_STAMP = 12
+"""Bytes of the encapsulation header and of a stamp."""

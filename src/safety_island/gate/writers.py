@@ -1,0 +1,50 @@
+"""The publishers of one topic: to which one the island keeps, and how often they change."""
+
+from __future__ import annotations
+
+from collections import deque
+
+WINDOW_S = 1.0
+"""Time [s] within which changes of a publisher are counted."""
+
+UNKNOWN = bytes(16)
+"""GUID of a publisher that was gone before its sample was looked at."""
+
+
+class Writers:
+    """Publishers by their GUIDs (16 bytes), as discovery tells them; times in s, monotonic.
+
+    ``owner`` is the one whose samples are taken: the first, as long as it lives; empty when none
+    is known. ``others`` counts the rest. ``limit`` changes within WINDOW_S are flapping.
+    """
+
+    def __init__(self, limit: int) -> None:
+        self.owner = b""
+        self.others = 0
+        self.alive: frozenset[bytes] = frozenset()
+        self._appeared: deque[float] = deque(maxlen=limit)
+        self._has_seen_one = False
+
+    def update(self, alive: frozenset[bytes], now: float) -> None:
+        """Note which publishers live now."""
+        new = len(alive - self.alive) - (not self._has_seen_one)
+        self._has_seen_one = self._has_seen_one or bool(alive)
+        self._appeared.extend([now] * new)
+        self.alive = alive
+        if self.owner not in alive:
+            self.owner = b""
+        self.others = len(alive) - bool(alive)
+
+    def takes(self, guid: bytes) -> bool:
+        """Whether a sample of this publisher is taken; the first one becomes the owner."""
+        if guid == self.owner or guid == UNKNOWN:
+            return True
+        if self.owner:
+            return False
+        self.owner = guid
+        return True
+
+    def flaps(self, now: float) -> bool:
+        """Whether publishers came and went too often within the last second."""
+        times = self._appeared
+        return len(times) == times.maxlen and now - times[0] <= WINDOW_S

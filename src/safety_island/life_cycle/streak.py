@@ -1,0 +1,26 @@
+"""How often or how long something has gone wrong without a break."""
+
+from __future__ import annotations
+
+import math
+
+
+class Streak:
+    """Counts failures in a row, and since when [s, monotonic] they go on."""
+
+    def __init__(self) -> None:
+        self.count = 0
+        self.since = math.inf
+
+    def note(self, failed: bool, now: float) -> None:
+        """Note one more time; a success ends the streak."""
+        if not failed:
+            self.count, self.since = 0, math.inf
+            return
+        if not self.count:
+            self.since = now
+        self.count += 1
+
+    def lasts_s(self, now: float) -> float:
+        """Time [s] since its first failure; 0 when there is none."""
+        return now - self.since if self.count else 0.0

@@ -1,0 +1,87 @@
+"""The life cycle as one pure function: from state and conditions to the next state."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from safety_island.life_cycle.reason import Reason
+from safety_island.life_cycle.state import State
+
+
+class Conditions(NamedTuple):
+    """What one tick found out."""
+
+    blocked: Reason
+    """Why nothing may be sent now, NONE when something may: what is missing, or what went wrong."""
+    disengaged: Reason
+    """Why the vehicle is not under control, NONE when it is."""
+    barred: Reason
+    """Why the island must not arm itself, NONE when it may."""
+    arm: bool
+    """Somebody asked for it."""
+    has_ramp: bool
+    """The vehicle hears nobody else who could brake it (CAN_ONLY)."""
+    hold_over: bool
+    """The last command was repeated often enough."""
+    ramp_over: bool
+    """The stop ramp has come to its end."""
+
+
+class Life(NamedTuple):
+    """The state, why, and for what cause an armed island fell out of ACTIVE (NONE: it did not)."""
+
+    state: State
+    reason: Reason
+    cause: Reason = Reason.NONE
+
+
+def next_life(life: Life, now: Conditions) -> Life:
+    """Return the next state; every pair is in ``tests/life_cycle/test_transition.py``."""
+    state, _, cause = life
+    if state is State.ACTIVE and not now.disengaged:
+        return _fall(now) if now.blocked else Life(State.ACTIVE, Reason.NONE)
+    if state in (State.HOLD, State.STOP) and not now.disengaged:
+        return _stop(state, cause, now)
+    if state is State.SILENT:
+        return _silent(cause, now)
+    return _unarmed(state, now)
+
+
+def _unarmed(state: State, now: Conditions) -> Life:
+    """From INIT and READY, and from any state that an operator leaves by disengaging."""
+    if now.blocked:
+        return Life(State.INIT, now.blocked)
+    if now.disengaged:
+        return Life(State.READY, now.disengaged)
+    if state is State.INIT and now.barred and not now.arm:
+        return Life(State.SILENT, now.barred, now.barred)
+    return Life(State.ACTIVE, Reason.NONE)
+
+
+def _fall(now: Conditions) -> Life:
+    """Out of ACTIVE: silence, since a gate brakes; without one, hold and then stop."""
+    if not now.has_ramp:
+        return Life(State.SILENT, now.blocked, now.blocked)
+    state = State.STOP if now.hold_over else State.HOLD
+    return Life(state, now.blocked, now.blocked)
+
+
+def _stop(state: State, cause: Reason, now: Conditions) -> Life:
+    """From HOLD back when the cause has gone; a stop that has begun is carried through."""
+    if state is State.HOLD and not now.blocked:
+        return Life(State.ACTIVE, Reason.NONE)
+    if state is State.STOP and now.ramp_over:
+        return Life(State.SILENT, now.blocked or Reason.LATCHED, cause)
+    is_stop = state is State.STOP or now.hold_over
+    return Life(State.STOP if is_stop else State.HOLD, now.blocked or cause, cause)
+
+
+def _silent(cause: Reason, now: Conditions) -> Life:
+    """Latched: out of it only by an explicit act, and never while a cause stands."""
+    if now.blocked:
+        return Life(State.SILENT, now.blocked, cause)
+    if now.disengaged:
+        return Life(State.READY, now.disengaged)
+    if now.arm:
+        return Life(State.ACTIVE, Reason.NONE)
+    return Life(State.SILENT, Reason.LATCHED if cause is not now.barred else cause, cause)

@@ -1,0 +1,55 @@
+"""Who else is in the domain: other islands, and the publishers of our inputs."""
+
+from __future__ import annotations
+
+from safety_island.dds import topics
+from safety_island.life_cycle.island_watch import IslandWatch
+from safety_island.life_cycle.reason import Reason
+from safety_island.node.input_set import InputSet
+from safety_island.node.transport import Transport
+from safety_island.params import IslandParameters
+from safety_island.platform.interfaces import Logger
+
+
+class Identity:
+    """Looks at discovery when it has news. ``own`` holds the GUIDs of our command publishers."""
+
+    def __init__(
+        self,
+        transport: Transport,
+        inputs: InputSet,
+        logger: Logger,
+        parameters: IslandParameters,
+        joined_at: float,
+    ) -> None:
+        """``joined_at`` [s, monotonic]: when the transport entered its domain."""
+        self.own: set[bytes] = set()
+        discovery_s = parameters.life_cycle.discovery_time if transport.needs_discovery else 0.0
+        self.islands = IslandWatch(joined_at, discovery_s)
+        self._transport, self._inputs, self._logger = transport, inputs, logger
+        self._keeps_first = parameters.gate.second_publisher == "keep_first"
+        self._changes = -1
+
+    def look(self, now: float) -> None:
+        """Take what discovery has found since the last tick [s, monotonic]."""
+        changes = self._transport.endpoint_changes()
+        if changes == self._changes and not self.islands.looks_around(now):
+            return
+        self._changes = changes
+        entry = topics.CONTROL
+        others = self._transport.writers(entry.name, entry.type_name) - self.own
+        if others - self.islands.others:
+            self._logger.warning("another publisher is on %s", entry.name)
+        self.islands.update(others, now)
+        self._inputs.discover(now)
+
+    def blocked(self, now: float) -> Reason:
+        """Why nothing may be sent because of other islands, NONE when it may."""
+        islands = self.islands
+        if islands.is_newcomer:
+            return Reason.SECOND_ISLAND
+        if islands.looks_around(now):
+            return Reason.DISCOVERING
+        if islands.others and not self._keeps_first:
+            return Reason.SECOND_PUBLISHER
+        return Reason.NONE

@@ -1,0 +1,130 @@
+"""The five inputs together: who publishes them, what is missing, too old, or out of place."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from safety_island.control.status import Mode
+from safety_island.gate.params import GateParams
+from safety_island.life_cycle.reason import Reason
+from safety_island.messages.inputs import Odometry, OperationMode
+from safety_island.node.follower import InputFollower
+from safety_island.node.inputs import INPUTS, Input
+from safety_island.node.transport import Transport
+from safety_island.platform.interfaces import Logger
+
+ODOMETRY = 1
+OPERATION_MODE = 4
+"""Places in the table of inputs."""
+
+NO_SUBJECT = 255
+"""Stands for: the reason is about no input."""
+
+
+class Blocked(NamedTuple):
+    """Why nothing may be sent, and the input that it is about."""
+
+    reason: Reason
+    subject: int = NO_SUBJECT
+
+
+_NOTHING = Blocked(Reason.NONE)
+
+
+class InputSet:
+    """The inputs of a node. Times in s, monotonic."""
+
+    def __init__(
+        self, transport: Transport, follower: InputFollower, logger: Logger, params: GateParams
+    ) -> None:
+        self.items = tuple(
+            Input(
+                spec,
+                transport.subscription(
+                    spec.topic.name, spec.topic.type_name, spec.topic.subscription_qos
+                ),
+                follower,
+                logger,
+                params,
+            )
+            for spec in INPUTS
+        )
+        self._mode = self.items[OPERATION_MODE]
+        self._transport = transport
+        self._logger = logger
+        self._keeps_first = params.second_publisher == "keep_first"
+        self._warning_age_s = params.age_warning
+        self._are_complete = False
+
+    def discover(self, now: float) -> None:
+        """Look which publishers live; to be called when some came or went."""
+        for item, spec in zip(self.items, INPUTS, strict=True):
+            others = item.writers.others
+            item.writers.update(self._transport.writers(item.topic, spec.topic.type_name), now)
+            if item.writers.others > others:
+                self._logger.warning("%s has %d publishers", item.topic, item.writers.others + 1)
+        if not self._mode.writers.alive:
+            self._mode.stamps.forget()  # the next publisher may tell the same again
+
+    def take(self, now: float, since: float) -> int:
+        """Take what came since the last tick; return how many samples were refused."""
+        refused = 0
+        for item in self.items:
+            refused += item.take(now, since)
+        return refused
+
+    def drop(self) -> None:
+        """Drop what has waited while the process stood still; the operation mode stays."""
+        for item in self.items:
+            if item is not self._mode:
+                item.drop()
+
+    def blocked(self, now: float) -> Blocked:
+        """Return what forbids to send, the first that counts."""
+        if not self._are_complete and (found := self._missing()):
+            return found
+        for index, item in enumerate(self.items):
+            if item.writers.flaps(now):
+                return Blocked(Reason.WRITER_FLAPPING, index)
+            if item.writers.others and not self._keeps_first:
+                return Blocked(Reason.SECOND_PUBLISHER, index)
+        return self._stale(now)
+
+    def _missing(self) -> Blocked | None:
+        for index, item in enumerate(self.items):
+            if not item.accepted:
+                return Blocked(Reason.WAITING_FOR_INPUT, index)
+        self._are_complete = True
+        return None
+
+    def missing(self) -> list[str]:
+        """Name the inputs of which no sample was ever accepted."""
+        return [item.name for item in self.items if not item.accepted]
+
+    def _stale(self, now: float) -> Blocked:
+        stale = [
+            index
+            for index, item in enumerate(self.items)
+            if now - item.accepted_at > item.age_limit_s
+        ]
+        if not stale:
+            return _NOTHING
+        if len(stale) == OPERATION_MODE:  # all that have a limit
+            return Blocked(Reason.PARTITION)
+        return Blocked(Reason.INPUT_STALE, stale[0])
+
+    def disengaged(self) -> Reason:
+        """Say why the vehicle is not under control, NONE when it is."""
+        if self._mode.message is None:
+            return Reason.WAITING_FOR_INPUT
+        if not self._mode.writers.alive:
+            return Reason.MODE_WRITER_GONE
+        state: OperationMode = self._mode.message
+        if state.mode == Mode.AUTONOMOUS and state.is_autoware_control_enabled:
+            return Reason.NONE
+        return Reason.NOT_AUTONOMOUS
+
+    def speed(self) -> float:
+        """Return the speed [m/s] that was measured last; 0 before the first time."""
+        message: Odometry | None = self.items[ODOMETRY].message
+        return 0.0 if message is None else message.vx
