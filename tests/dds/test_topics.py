@@ -6,7 +6,7 @@ import pytest
 
 from safety_island.dds import topics
 from safety_island.dds.qos import DEFAULT, INPUT_DEPTH, LATCHED
-from safety_island.dds.topics import BRIDGED, INPUTS, OUTPUTS, TOPICS
+from safety_island.dds.topics import ARM, BRIDGED, EVERY_TICK, INPUTS, OUTPUTS, OWN, STATUS, TOPICS
 from safety_island.messages import registry
 
 DEBUG = "/control/trajectory_follower/{}/debug/processing_time_ms"
@@ -52,7 +52,16 @@ def test_states_that_are_sent_on_change_are_latched() -> None:
     assert all(entry.subscription_qos.depth == INPUT_DEPTH for entry in INPUTS)
 
 
+def test_the_islands_own_topics_stay_on_its_domain() -> None:
+    assert OWN == (STATUS, ARM)
+    assert not set(OWN) & set(TOPICS)
+    assert all(entry.bridged is None and entry.qos == DEFAULT for entry in OWN)
+    assert all(registry.known(entry.type_name) for entry in OWN)
+    assert (STATUS.rate_hz, ARM.rate_hz) == (EVERY_TICK, None)
+
+
 def test_an_entry_is_found_by_its_key() -> None:
     assert topics.topic("odometry") is topics.ODOMETRY
+    assert topics.topic("status") is STATUS
     with pytest.raises(KeyError):
         topics.topic("camera")

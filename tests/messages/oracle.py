@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
+from safety_island import messages
 from safety_island.dds.types import cyclone_type
 from safety_island.messages import registry
-from safety_island.messages.description import Array, Element, FieldType, Named, Sequence
+from safety_island.messages.description import Array, Element, FieldType, Named, Primitive, Sequence
 
 MSG_TEXTS = {
     "autoware_control_msgs/msg/Lateral": """
@@ -67,6 +69,7 @@ MSG_TEXTS = {
     "rmw_dds_common/msg/Gid": "uint8[16] data",
 }
 """As the public packages define them, written from spec and packages, not from our IDL files."""
+OWN_MSG_FILES = Path(messages.__file__).parent / "msg" / "safety_island_msgs" / "msg"
 
 
 @cache
@@ -77,6 +80,8 @@ def typestore() -> Any:
     for name, text in MSG_TEXTS.items():
         lines = "\n".join(line.strip() for line in text.splitlines())
         store.register(get_types_from_msg(lines, name))
+    for path in sorted(OWN_MSG_FILES.glob("*.msg")):
+        store.register(get_types_from_msg(path.read_text(), f"safety_island_msgs/msg/{path.stem}"))
     return store
 
 
@@ -116,4 +121,8 @@ def _map(kind: FieldType, value: Any, make: Any, arrays: bool) -> Any:
     return make(kind.name, value) if isinstance(kind, Named) else value
 
 
-_DTYPES: dict[Element, str] = {"double": "f8", "uint8": "u1"}  # type: ignore[dict-item]
+_DTYPES: dict[Element, str] = {
+    Primitive.DOUBLE: "f8",
+    Primitive.UINT8: "u1",
+    Primitive.UINT32: "u4",
+}

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from safety_island.messages import inputs, outputs, trajectory
+from safety_island.messages import arm, inputs, outputs, status, trajectory
 from safety_island.messages.points import POINT, Points
 from safety_island.messages.wire import Time
 
@@ -39,6 +39,16 @@ def trajectory_bytes(count: int, frame_id: str = "map") -> bytes:
     return trajectory.encode_trajectory(STAMP, frame_id, points(count), Time(0, 5))
 
 
+def status_bytes() -> bytes:
+    """Return a status with a different number in every byte that may have any value."""
+    writer = status.StatusWriter()
+    raw = writer.record.view("u1")
+    raw[:] = np.arange(len(raw)) % 101 + 1
+    for name in ("degraded", "armed", "engaged", "control_enabled", "published"):
+        writer.record[name] = True
+    return writer.encode()
+
+
 def hot_messages(count: int = 3) -> list[Hot]:
     """Return one sample of each hot type; the trajectory has ``count`` points."""
     numbers = [0.5 + i for i in range(13)]
@@ -65,4 +75,6 @@ def hot_messages(count: int = 3) -> list[Hot]:
             outputs.decode_float64_stamped,
             outputs.encode_float64_stamped(STAMP, 1.5),
         ),
+        Hot(status.STATUS, status.decode_status, status_bytes()),
+        Hot(arm.ARM, arm.decode_arm, arm.encode_arm(arm.Arm(STAMP, 2**63 + 1))),
     ]

@@ -43,6 +43,18 @@ FIELDS = {
     "rmw_dds_common/msg/Gid": "data",
     "rmw_dds_common/msg/NodeEntitiesInfo": "node_namespace node_name reader_gid_seq writer_gid_seq",
     "rmw_dds_common/msg/ParticipantEntitiesInfo": "gid node_entities_info_seq",
+    "safety_island_msgs/msg/Arm": "stamp nonce",
+    "safety_island_msgs/msg/InputStatus": "refused writer_guid accepted received superseded"
+    " refused_in_a_row age age_limit transport_delay warnings last_refusal other_writers",
+    "safety_island_msgs/msg/Status": "stamp arm_nonce tick commands memory lateral_error"
+    " yaw_error residual stop_dist target_vel command_angle command_rate"
+    " command_velocity command_acceleration"
+    " tick_time lateral_time longitudinal_time lateness missed_periods"
+    " missed_periods_total overruns controller_limits guard_limits guard_clamped"
+    " guard_refused sequence output_failures solver_status solver_iterations"
+    " active_constraints state reason subject latched_cause operation_mode"
+    " longitudinal_state mpc_status guard_verdict output_mode arm_result"
+    " other_control_writers degraded armed engaged control_enabled published inputs",
     "std_msgs/msg/Header": "stamp frame_id",
     "tier4_debug_msgs/msg/Float64Stamped": "stamp data",
 }

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from safety_island.dds.names import dds_topic_name
-from safety_island.dds.topics import TOPICS, TopicEntry
+from safety_island.dds.topics import OWN, TOPICS, TopicEntry
 from safety_island.messages.registry import dds_type_name
 
 PAGE = "docs/topics.md"
@@ -26,21 +26,33 @@ All endpoints are reliable. The island takes the newest sample of each input at 
 what it passes over. The rates of the inputs are those of Autoware's planning simulator.
 """
 
+OWN_TOPICS = """\
+## The island's own
+
+Beyond what Autoware has, on the island's domain and not bridged. The status tells what the island
+does and why; a request to arm asks it to leave SILENT, and the status answers. Both types stand as
+`.msg` files in `src/safety_island/messages/msg`.
+"""
+
 
 def render() -> str:
     """Return the page."""
-    head = ["direction", "topic and type", "durability", "rate", "bridged (domains)"]
-    rows = [head, ["---"] * len(head), *(_row(entry) for entry in TOPICS)]
-    table = "\n".join(f"| {' | '.join(row)} |" for row in rows)
     names = "\n".join(
         f"| `{entry.name}` | `{dds_topic_name(entry.name)}` | `{dds_type_name(entry.type_name)}` |"
-        for entry in TOPICS
+        for entry in (*TOPICS, *OWN)
     )
     return (
-        f"{INTRODUCTION}\n{table}\n\n"
+        f"{INTRODUCTION}\n{_table(TOPICS)}\n\n"
+        f"{OWN_TOPICS}\n{_table(OWN)}\n\n"
         "## As DDS tools show them\n\n"
         f"| ROS topic | DDS topic | DDS type |\n| --- | --- | --- |\n{names}\n"
     )
+
+
+def _table(entries: Sequence[TopicEntry]) -> str:
+    head = ["direction", "topic and type", "durability", "rate", "bridged (domains)"]
+    rows = [head, ["---"] * len(head), *(_row(entry) for entry in entries)]
+    return "\n".join(f"| {' | '.join(row)} |" for row in rows)
 
 
 def _row(entry: TopicEntry) -> list[str]:

@@ -1,6 +1,6 @@
 """Names of every state and reason that the kernels return as a number."""
 
-from enum import IntEnum
+from enum import IntEnum, IntFlag
 
 
 class Mode(IntEnum):
@@ -92,3 +92,30 @@ class MpcStatus(IntEnum):
     SOLUTION_VIOLATES = 10
     SOLUTION_NOT_OPTIMAL = 11
     SOLVER_ERROR = 12
+
+
+class ControllerLimit(IntFlag):
+    """What bounded or held a command in a tick, for the status: one bit for each flag of TRACE."""
+
+    STEERING_ANGLE = 1
+    """The tyre angle was clamped to ``max_steer_angle``."""
+    STEERING_RATE = 2
+    """A steering-rate constraint was active."""
+    STEERING_HELD = 4
+    """The vehicle stands, so the last steering command was held."""
+    ACCELERATION = 8
+    """``min_acc`` or ``max_acc`` acted."""
+    JERK = 16
+    """``min_jerk`` or ``max_jerk`` acted."""
+    COMMAND_DIFFERENCE = 32
+    """``max_acc_cmd_diff`` acted."""
+    PITCH = 64
+    """The pitch of the slope compensation was clamped."""
+    SLOW_START = 128
+    """The start was held back until the steering has converged."""
+    BRAKE_KEEPING = 256
+    """A light brake was kept up to the stop point."""
+    FAR_FROM_TRAJECTORY = 512
+    """The vehicle is farther from the trajectory than the longitudinal controller follows."""
+    STUCK_IN_EMERGENCY = 1024
+    """The emergency stop lasts until the vehicle is near the trajectory again."""

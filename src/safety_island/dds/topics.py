@@ -128,6 +128,22 @@ LONGITUDINAL_TIME = TopicEntry(
     DEFAULT,
     EVERY_TICK,
 )
+STATUS = TopicEntry(
+    "status",
+    "/safety_island/status",
+    "safety_island_msgs/msg/Status",
+    Direction.OUT,
+    DEFAULT,
+    EVERY_TICK,
+)
+ARM = TopicEntry(
+    "arm",
+    "/safety_island/arm",
+    "safety_island_msgs/msg/Arm",
+    Direction.IN,
+    DEFAULT,
+    None,
+)
 
 TOPICS = (
     STEERING,
@@ -143,8 +159,10 @@ TOPICS = (
 INPUTS = tuple(entry for entry in TOPICS if entry.direction is Direction.IN)
 OUTPUTS = tuple(entry for entry in TOPICS if entry.direction is Direction.OUT)
 BRIDGED = tuple(entry for entry in TOPICS if entry.bridged is not None)
+OWN = (STATUS, ARM)
+"""The island's own, beyond the contract, on its own domain."""
 
 
 def topic(key: str) -> TopicEntry:
     """Return the entry of a short name; KeyError when the table has none."""
-    return {entry.key: entry for entry in TOPICS}[key]
+    return {entry.key: entry for entry in (*TOPICS, *OWN)}[key]

@@ -1,0 +1,45 @@
+"""What is wrong with an input without ending the output; the bits stand in the status message."""
+
+from __future__ import annotations
+
+from enum import IntFlag
+
+
+class InputWarning(IntFlag):
+    """Warnings about one input."""
+
+    AGE = 1
+    RATE = 2
+    CLOCK = 4
+    DELAY = 8
+    SECOND_PUBLISHER = 16
+    PUBLISHER_CHANGED = 32
+
+
+EXPLANATIONS: dict[InputWarning, tuple[str, str]] = {
+    InputWarning.AGE: (
+        "it is older than `gate.age_warning`",
+        "look at its publisher, the bridge and the network",
+    ),
+    InputWarning.RATE: (
+        "fewer samples come than 90 % of its usual rate",
+        "look at the network, and at the load of the main compute",
+    ),
+    InputWarning.CLOCK: (
+        "its stamp is more than `gate.clock_warning` away from the island's wall clock",
+        "set the clocks of both machines by one source",
+    ),
+    InputWarning.DELAY: (
+        "it is under way for longer than before, by more than `gate.clock_warning`",
+        "look at the bridge and the network",
+    ),
+    InputWarning.SECOND_PUBLISHER: (
+        "another publisher is on its topic, and the island keeps to the first",
+        "stop the second publisher",
+    ),
+    InputWarning.PUBLISHER_CHANGED: (
+        "its publisher changed within the last second",
+        "nothing, when it was restarted on purpose",
+    ),
+}
+"""Warning -> what it means, what to do."""

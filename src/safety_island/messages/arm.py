@@ -1,0 +1,49 @@
+"""The request to leave SILENT, and what the status answers."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+from struct import Struct
+from typing import NamedTuple
+
+from safety_island.messages import wire
+from safety_island.messages.inputs import little_endian
+from safety_island.messages.wire import HEADER_LE, Time
+
+ARM = "safety_island_msgs/msg/Arm"
+
+_ARM = Struct("<4siIQ")
+
+
+class ArmResult(IntEnum):
+    """What became of the last request; the numbers are those of the status message."""
+
+    NONE = 0
+    """No request came."""
+    ARMED = 1
+    """The island left SILENT."""
+    REFUSED = 2
+    """What made it SILENT still stands: see the reason."""
+    NOT_NEEDED = 3
+    """It was not SILENT."""
+
+
+class Arm(NamedTuple):
+    """One request. The same nonce again is the same request: it is sent until it is answered."""
+
+    stamp: Time
+    nonce: int
+    """Any number from 1 to 2^64 - 1."""
+
+
+def encode_arm(request: Arm) -> bytes:
+    """Return a safety_island_msgs/msg/Arm."""
+    return _ARM.pack(HEADER_LE, *request.stamp, request.nonce)
+
+
+def decode_arm(data: bytes) -> Arm:
+    """Return the request of a safety_island_msgs/msg/Arm; DecodeError when it is none."""
+    data = little_endian(data, ARM)
+    wire.check_end(data, _ARM.size, ARM)
+    _, sec, nanosec, nonce = _ARM.unpack_from(data)
+    return Arm(Time(sec, nanosec), nonce)
