@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from safety_island.control.records import COMMAND, POINT, Records, new_points
+from safety_island.control.records import COMMAND, POINT, TRACE, Records, new_points
 from safety_island.control.status import Mode, MpcStatus, Refusal
 from safety_island.dds import topics
 from safety_island.dds.topics import TopicEntry
@@ -61,6 +61,7 @@ class FakeFollower:
         self.longitudinal_state = 0
         self.incoming = new_points()
         self.command: Records = np.zeros(1, COMMAND)
+        self.trace: Records = np.zeros(1, TRACE)
         self.command["steering_tire_angle"] = 0.125
         self.command["acceleration"] = -1.5
 

@@ -141,7 +141,7 @@ class TestStale:
         rig.everything(ROWS)
         report = rig.tick()
         assert (report.outcome, report.detail) == (Outcome.STALE, "lateral")
-        assert any("refused a command: stale lateral" in line for line in rig.lines)
+        assert any("the guard refused a command: stale" in line for line in rig.lines)
 
     def test_a_wall_clock_step_makes_nothing_stale(self, rig: Rig) -> None:
         rig.everything(ROWS)

@@ -66,7 +66,7 @@ def _start(run: Run, start: StopAtOnce, stack: ExitStack) -> None:
         follower,
         parameters,
         outputs=(),
-        has_ramp=not settings.mode.uses_dds,
+        mode=settings.mode,
         joined_at=joined_at,
     )
     node.outputs = can.outputs(node)

@@ -30,8 +30,7 @@ class GateParams:
     )
     clock_warning: float = parameter(
         "s",
-        "Distance of a stamp from the island's wall clock, and growth of a transport delay, that"
-        " is warned of.",
+        "Distance of a stamp from the island's wall clock that is warned of.",
         0.001,
         3600.0,
         key="gate.clock_warning",

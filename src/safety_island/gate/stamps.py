@@ -32,7 +32,7 @@ class StampGate:
 
     def __init__(self, age_limit_s: float = math.inf) -> None:
         self.steps_back = 0
-        self._limit_s = age_limit_s
+        self.limit_s = age_limit_s
         self.forget()
 
     def forget(self) -> None:
@@ -62,13 +62,13 @@ class StampGate:
             return self._judge_older(stamp_ns, now)
         growth_s = since_s * (1.0 - FORGET_RATE) - step_ns * 1e-9
         self._new_delay_s = max(0.0, self.delay_s + growth_s)
-        return SampleReason.DELAYED if self._new_delay_s > self._limit_s else None
+        return SampleReason.DELAYED if self._new_delay_s > self.limit_s else None
 
     def _judge_older(self, stamp_ns: int, now: float) -> SampleReason | None:
         if stamp_ns <= self._older_ns or self._older_ns < 0:
             self._older_since = now
         self._older_ns = stamp_ns
-        if now - self._older_since < self._limit_s * STEP_BACK_SHARE:
+        if now - self._older_since < self.limit_s * STEP_BACK_SHARE:
             return SampleReason.OLDER
         self.steps_back += 1
         return None

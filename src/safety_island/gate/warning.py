@@ -30,7 +30,7 @@ EXPLANATIONS: dict[InputWarning, tuple[str, str]] = {
         "set the clocks of both machines by one source",
     ),
     InputWarning.DELAY: (
-        "it is under way for longer than before, by more than `gate.clock_warning`",
+        "it is under way for longer than before, by more than half its age limit",
         "look at the bridge and the network",
     ),
     InputWarning.SECOND_PUBLISHER: (

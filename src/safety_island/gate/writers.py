@@ -44,6 +44,10 @@ class Writers:
         self.owner = guid
         return True
 
+    def changed(self, now: float) -> bool:
+        """Whether a publisher appeared within the last second, after the first one."""
+        return bool(self._appeared) and now - self._appeared[-1] <= WINDOW_S
+
     def flaps(self, now: float) -> bool:
         """Whether publishers came and went too often within the last second."""
         times = self._appeared

@@ -1,1 +1,8 @@
-"""The guard between the controllers and the outputs; it shares no code with `control`."""
+"""The guard: independent checks between the controllers and the outputs."""
+
+from safety_island.guard.guard import Guard
+from safety_island.guard.limit import EXPLANATIONS, Limit, Verdict
+from safety_island.guard.params import GuardParams
+from safety_island.guard.proposal import Decision, Proposal
+
+__all__ = ["EXPLANATIONS", "Decision", "Guard", "GuardParams", "Limit", "Proposal", "Verdict"]

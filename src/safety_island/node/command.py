@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 from safety_island.control.records import Records
@@ -22,15 +21,15 @@ class Computed(NamedTuple):
     acceleration: float
     is_defined_steering_tire_rotation_rate: bool
 
+    def with_values(self, values: tuple[float, ...]) -> Computed:
+        """Return it with other values: angle, rate, velocity, acceleration."""
+        return Computed._make((self.stamp, self.longitudinal_stamp, *values, self[-1]))
+
     def stale_side(self, oldest: float) -> str:
         """Name the controller whose result is from before ``oldest`` [s]; empty when none is."""
         if not self.stamp >= oldest:
             return "lateral"
         return "" if self.longitudinal_stamp >= oldest else "longitudinal"
-
-    def is_finite(self) -> bool:
-        """Whether every number is one (only then their sum is one: they are float32)."""
-        return math.isfinite(sum(self))
 
     def to_control(self, wall_offset_ns: int) -> Control:
         """Return the message, its stamps on the wall clock.

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from safety_island.guard import Guard, Limit, Proposal, Verdict
 from safety_island.life_cycle.reason import Reason
 from safety_island.node.command import Computed
 from safety_island.node.report import Outcome
+from safety_island.platform.interfaces import Logger
 
 
 class Checked(NamedTuple):
@@ -18,10 +20,59 @@ class Checked(NamedTuple):
     detail: str = ""
 
 
-def check(command: Computed, oldest: float) -> Checked:
-    """Refuse what is stale (from before ``oldest`` [s, monotonic]) or not finite."""
-    if side := command.stale_side(oldest):
-        return Checked(None, Reason.COMMAND_STALE, Outcome.STALE, side)
-    if not command.is_finite():
-        return Checked(None, Reason.COMMAND_REFUSED, Outcome.NOT_FINITE, "command")
-    return Checked(command)
+NOT_CHECKED = Checked(None, Reason.NONE, Outcome.NOT_READY)
+
+
+class CommandCheck:
+    """Asks the guard about every command; counts and logs what it clamps and refuses.
+
+    ``verdict`` and ``limits`` are those of the last command.
+    """
+
+    def __init__(self, guard: Guard, timeout_s: float, logger: Logger) -> None:
+        self.clamped = 0
+        self.refused = 0
+        self.sequence = 0
+        self.verdict = Verdict.PASSED
+        self.limits = 0
+        self._guard = guard
+        self._timeout_s = timeout_s
+        self._logger = logger
+
+    def check(
+        self, command: Computed, now: float, speed: float, steering: float, engaged: bool
+    ) -> Checked:
+        """Judge a command at ``now`` [s, monotonic]; speed [m/s] and steering [rad] as measured."""
+        self.sequence += 1
+        oldest = min(command.stamp, command.longitudinal_stamp)
+        proposal = Proposal(now, oldest, self.sequence, *command[2:6])
+        decision = self._guard.check(proposal, speed, steering, engaged)
+        self.verdict, self.limits = decision.verdict, decision.limits
+        if decision.verdict is Verdict.PASSED:
+            return Checked(command)
+        if decision.verdict is Verdict.CLAMPED:
+            return self._clamp(command, decision[2:])
+        return self._refuse(command, now - self._timeout_s)
+
+    def forget(self) -> None:
+        """Note that nothing was sent: the next command has no predecessor."""
+        self._guard.forget()
+
+    def _clamp(self, command: Computed, values: tuple[float, ...]) -> Checked:
+        self.clamped += 1
+        names = self._names()
+        self._logger.warning("the guard clamped a command: %s", names, throttled=True, site=names)
+        return Checked(command.with_values(values))
+
+    def _refuse(self, command: Computed, oldest: float) -> Checked:
+        self.refused += 1
+        names = self._names()
+        self._logger.error("the guard refused a command: %s", names, throttled=True, site=names)
+        if self.limits & Limit.STALE and (side := command.stale_side(oldest)):
+            return Checked(None, Reason.COMMAND_STALE, Outcome.STALE, side)
+        outcome = Outcome.NOT_FINITE if self.limits & Limit.NOT_FINITE else Outcome.REFUSED
+        return Checked(None, Reason.COMMAND_REFUSED, outcome, names)
+
+    def _names(self) -> str:
+        names = [str(bit.name).lower().replace("_", " ") for bit in Limit(self.limits)]
+        return ", ".join(names)

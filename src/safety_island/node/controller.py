@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
+from safety_island.can.mode import OutputMode
 from safety_island.dds import topics
+from safety_island.guard import Guard
 from safety_island.life_cycle.life_cycle import Facts, LifeCycle
 from safety_island.life_cycle.ramp import Motion
 from safety_island.life_cycle.reason import Reason
@@ -12,8 +14,9 @@ from safety_island.life_cycle.state import State
 from safety_island.life_cycle.transition import Life
 from safety_island.messages.outputs import Control
 from safety_island.messages.wire import Time
+from safety_island.node.arming import Arming
 from safety_island.node.command import Computed, substitute
-from safety_island.node.command_check import Checked, check
+from safety_island.node.command_check import NOT_CHECKED, Checked, CommandCheck
 from safety_island.node.controllers import NO_COMMAND, Controllers, Ran
 from safety_island.node.explain import explain
 from safety_island.node.follower import Follower
@@ -22,15 +25,17 @@ from safety_island.node.input_set import Blocked, InputSet
 from safety_island.node.node import Node
 from safety_island.node.outputs import ControlTopic, Output, ProcessingTime
 from safety_island.node.report import Outcome, TickReport, describe
+from safety_island.node.status import StatusTopic
 from safety_island.node.transport import Transport
 from safety_island.params import IslandParameters
 from safety_island.platform.interfaces import Platform, Tick
 
 NAME = "safety_island"
 ON_TIME = Tick(0, 0, 0)
+MEMORY_EVERY = 64
+"""Ticks between two looks at the memory in use."""
 _NO_TIMES = (0, 0)
 _SENDS = (State.READY, State.ACTIVE)
-_SUBSTITUTES = (State.HOLD, State.STOP)
 _ALARMING = (State.HOLD, State.STOP, State.SILENT)
 _NOT_BLOCKED = Blocked(Reason.NONE)
 _OUTCOMES = {
@@ -55,23 +60,27 @@ class ControllerNode(Node):
         parameters: IslandParameters,
         outputs: Sequence[Output] | None = None,
         *,
-        has_ramp: bool = False,
+        mode: OutputMode = OutputMode.DDS_ONLY,
         joined_at: float | None = None,
     ) -> None:
         """Enter the topics. ``outputs``: where commands go; None: to ``control_cmd`` alone.
 
-        ``has_ramp``: the vehicle hears only CAN, so a stop is declared before silence;
-        ``joined_at`` [s, monotonic]: when the transport entered its domain (None: now).
+        With ``mode`` CAN_ONLY nobody else brakes the vehicle, so a stop is declared before
+        silence; ``joined_at`` [s, monotonic]: when the transport entered its domain (None: now).
         """
         super().__init__(NAME, platform, transport)
         if joined_at is None:
             joined_at = self.clock.monotonic_ns() / 1e9
-        self.parameters = parameters
+        self.parameters, self.mode = parameters, mode
         self.follower = follower
         self.controllers = Controllers(follower, self.clock, self.logger)
         self.inputs = InputSet(transport, follower, self.logger, parameters.gate)
         self.identity = Identity(transport, self.inputs, self.logger, parameters, joined_at)
-        self.life_cycle = LifeCycle(parameters.life_cycle, parameters.node.ctrl_period, has_ramp)
+        period_s, timeout_s = parameters.node.ctrl_period, parameters.node.timeout_thr_sec
+        self.life_cycle = LifeCycle(parameters.life_cycle, period_s, not mode.uses_dds)
+        guard = Guard(parameters.guard, parameters.vehicle.wheel_base, timeout_s)
+        self.check = CommandCheck(guard, timeout_s, self.logger)
+        self.arming = Arming(self.subscription(topics.ARM), self.logger)
         self.outputs = tuple(outputs) if outputs is not None else (self.control_topic(),)
         self.report: TickReport | None = None
         """The last tick."""
@@ -81,6 +90,7 @@ class ControllerNode(Node):
             ProcessingTime(topic, self.publisher(topic), self.logger)
             for topic in (topics.LATERAL_TIME, topics.LONGITUDINAL_TIME)
         )
+        self.status = StatusTopic(self, self.publisher(topics.STATUS))
         self._ticks = 0
         self._last_tick: float | None = None
         self._command: Control | None = None
@@ -95,6 +105,8 @@ class ControllerNode(Node):
         """Do one tick of ``run``."""
         if due.skipped:
             self.logger.warning("%d ticks were missed", due.skipped, throttled=True)
+        if self._ticks % MEMORY_EVERY == 0:
+            self.status.memory_bytes = self.platform.memory_bytes()
         report = self.tick(due=due)
         for observer in self.observers:
             observer(report)
@@ -133,6 +145,7 @@ class ControllerNode(Node):
             refused,
             self._command,
         )
+        self.status.send(self.report)
         return self.report
 
     def close(self) -> None:
@@ -165,11 +178,13 @@ class ControllerNode(Node):
         if not blocked.reason and ran is NO_COMMAND:
             self.logger.info("Waiting for a trajectory that can be followed", throttled=True)
             blocked = Blocked(Reason.NO_TRAJECTORY)
-        checked = self._check(ran, now, start_ns)
+        checked = self._check(ran, now, start_ns, not disengaged)
+        asked = self.arming.take()
         facts = Facts(
             blocked.reason,
             disengaged,
             self.inputs.speed(),
+            asked,
             failed=bool(ran.fault),
             unsolved=ran.unsolved,
             refused=checked.refusal,
@@ -178,37 +193,43 @@ class ControllerNode(Node):
         life = self.life_cycle.judge(facts, now)
         if life.state is not before:
             self._tell(life, blocked.subject)
+        if asked:
+            self.arming.answer(before, life.state)
         if ran.command is not None:
             self._tell_times()
-        return self._send(ran, checked, now)
+        return self._send(checked, now)
 
-    def _check(self, ran: Ran, now: float, start_ns: int) -> Checked:
-        """Refuse what is stale or not finite."""
+    def _check(self, ran: Ran, now: float, start_ns: int, engaged: bool) -> Checked:
+        """Ask the guard about the command of the controllers."""
         if ran.command is None:
-            return Checked(None, Reason.NONE, Outcome.FAULT, ran.fault)
-        late_s = (self.clock.monotonic_ns() - start_ns) / 1e9
-        checked = check(ran.command, now + late_s - self.parameters.node.timeout_thr_sec)
-        if checked.refusal:
-            name = checked.outcome.name.lower().replace("_", " ")
-            self.logger.error("refused a command: %s %s", name, checked.detail, throttled=True)
-        return checked
+            return NOT_CHECKED._replace(outcome=Outcome.FAULT, detail=ran.fault)
+        now += (self.clock.monotonic_ns() - start_ns) / 1e9
+        return self.check.check(
+            ran.command, now, self.inputs.speed(), self.inputs.steering(), engaged
+        )
 
-    def _send(self, ran: Ran, checked: Checked, now: float) -> tuple[Outcome, str]:
+    def _send(self, checked: Checked, now: float) -> tuple[Outcome, str]:
         """Send what the state lets out."""
         life = self.life_cycle.life
-        if life.state in _SUBSTITUTES:
-            motion = self.life_cycle.motion()
-            assert motion is not None
-            return self._publish(substitute(motion, now), Outcome.SUBSTITUTED)
-        if life.state not in _SENDS:
-            reason = _OUTCOMES.get(life.reason, Outcome.FORBIDDEN)
-            return reason, self._detail(life.reason)
+        if life.state in _SENDS and checked.command is not None:
+            sent = self._publish(checked.command, Outcome.PUBLISHED)
+            motion = Motion._make(checked.command[2:6])
+            self.life_cycle.sent(motion, sent[0] is Outcome.PUBLISHED, now)
+            return sent
+        if (substituted := self.life_cycle.motion()) is not None:
+            return self._substitute(substituted, now)
+        self.check.forget()
+        if life.state in _SENDS:
+            return checked.outcome, checked.detail
+        return _OUTCOMES.get(life.reason, Outcome.FORBIDDEN), self._detail(life.reason)
+
+    def _substitute(self, motion: Motion, now: float) -> tuple[Outcome, str]:
+        """Send a command of the life cycle; the guard judges it like any other."""
+        speed, steering = self.inputs.speed(), self.inputs.steering()
+        checked = self.check.check(substitute(motion, now), now, speed, steering, False)
         if checked.command is None:
             return checked.outcome, checked.detail
-        outcome = self._publish(checked.command, Outcome.PUBLISHED)
-        motion = Motion._make(checked.command[2:6])
-        self.life_cycle.sent(motion, outcome[0] is Outcome.PUBLISHED, now)
-        return outcome
+        return self._publish(checked.command, Outcome.SUBSTITUTED)
 
     def _publish(self, result: Computed, sent: Outcome) -> tuple[Outcome, str]:
         """Give a command to every output."""

@@ -50,6 +50,10 @@ class Follower(InputFollower, Protocol):
     def command(self) -> Records:
         """COMMAND record, shape (1,), always the same memory; stamps on the clock of ``now``."""
 
+    @property
+    def trace(self) -> Records:
+        """TRACE record, shape (1,), always the same memory."""
+
     def allow_control(self, allowed: bool) -> None:
         """Say whether commands are followed; if not, the controllers run as in manual mode."""
 

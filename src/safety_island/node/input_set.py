@@ -6,14 +6,17 @@ from typing import NamedTuple
 
 from safety_island.control.status import Mode
 from safety_island.gate.params import GateParams
+from safety_island.gate.warning import EXPLANATIONS, InputWarning
+from safety_island.gate.warnings import warnings
 from safety_island.life_cycle.reason import Reason
-from safety_island.messages.inputs import Odometry, OperationMode
+from safety_island.messages.inputs import Odometry, OperationMode, Steering
 from safety_island.node.follower import InputFollower
 from safety_island.node.inputs import INPUTS, Input
 from safety_island.node.transport import Transport
 from safety_island.platform.interfaces import Logger
 
 ODOMETRY = 1
+STEERING = 2
 OPERATION_MODE = 4
 """Places in the table of inputs."""
 
@@ -53,7 +56,9 @@ class InputSet:
         self._transport = transport
         self._logger = logger
         self._keeps_first = params.second_publisher == "keep_first"
-        self._warning_age_s = params.age_warning
+        self._warning_clock_ns = params.clock_warning * 1e9
+        self.warnings = (0,) * len(self.items)
+        """Bits of InputWarning for each input, as of the last tick."""
         self._are_complete = False
 
     def discover(self, now: float) -> None:
@@ -112,6 +117,37 @@ class InputSet:
         if len(stale) == OPERATION_MODE:  # all that have a limit
             return Blocked(Reason.PARTITION)
         return Blocked(Reason.INPUT_STALE, stale[0])
+
+    def warn(self, now: float, wall_ns: int) -> None:
+        """Look which warnings stand, and log those that are new."""
+        found = tuple([self._warnings(item, now, wall_ns) for item in self.items])
+        if found != self.warnings:
+            before, self.warnings = self.warnings, found
+            for item, old, new in zip(self.items, before, found, strict=True):
+                for bit in InputWarning(new & ~old):
+                    what = EXPLANATIONS[bit][0]
+                    site = f"{item.topic} {bit.name}"
+                    self._logger.warning("%s: %s", item.name, what, throttled=True, site=site)
+
+    def _warnings(self, item: Input, now: float, wall_ns: int) -> int:
+        if item.message is None:
+            return 0
+        is_old = now - item.accepted_at > item.age_warning_s
+        is_off = item is not self._mode and (
+            abs(wall_ns - item.stamp_ns) > self._warning_clock_ns + (now - item.accepted_at) * 1e9
+        )
+        return warnings(now, item.stamps, item.writers, item.rate, is_old, is_off)
+
+    @property
+    def operation_mode(self) -> OperationMode | None:
+        """The operation mode in force, None before the first."""
+        found: OperationMode | None = self._mode.message
+        return found
+
+    def steering(self) -> float:
+        """Return the tyre angle [rad] that was measured last; 0 before the first time."""
+        message: Steering | None = self.items[STEERING].message
+        return 0.0 if message is None else message.steering_tire_angle
 
     def disengaged(self) -> Reason:
         """Say why the vehicle is not under control, NONE when it is."""

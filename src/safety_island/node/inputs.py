@@ -18,6 +18,7 @@ from safety_island.dds.topics import TopicEntry
 from safety_island.gate.content import ContentGate
 from safety_island.gate.newest import newest_first, overtaken
 from safety_island.gate.params import GateParams
+from safety_island.gate.rate import RateMeter
 from safety_island.gate.reason import SampleReason
 from safety_island.gate.stamps import StampGate
 from safety_island.gate.writers import Writers
@@ -41,6 +42,7 @@ class InputSpec(NamedTuple):
     check: Callable[[ContentGate, Any, bytes, StampGate], SampleReason | None]
     offer: Callable[[InputFollower, Any], Refusal]
     age_limit_s: Callable[[GateParams], float] = lambda params: math.inf
+    age_warning_s: Callable[[GateParams], float] = lambda params: math.inf
 
 
 def _plain(decode: Callable[[bytes], Any]) -> Callable[[InputFollower], Callable[[bytes], Any]]:
@@ -89,6 +91,7 @@ INPUTS = (
         ContentGate.odometry,
         _offer_odometry,
         lambda params: params.odometry_age_limit,
+        lambda params: params.age_warning,
     ),
     InputSpec(
         "steering",
@@ -97,6 +100,7 @@ INPUTS = (
         ContentGate.anything,
         _offer_steering,
         lambda params: params.steering_age_limit,
+        lambda params: params.age_warning,
     ),
     InputSpec(
         "acceleration",
@@ -105,6 +109,7 @@ INPUTS = (
         ContentGate.acceleration,
         _offer_acceleration,
         lambda params: params.acceleration_age_limit,
+        lambda params: params.age_warning,
     ),
     InputSpec(
         "operation mode",
@@ -138,6 +143,7 @@ class Input:
         self.stamps = StampGate(spec.age_limit_s(params))
         self.writers = Writers(params.writer_changes)
         self.age_limit_s = spec.age_limit_s(params)
+        self.age_warning_s = spec.age_warning_s(params)
         self.accepted = 0
         self.superseded = 0
         """Samples passed over for a newer one."""
@@ -145,6 +151,9 @@ class Input:
         """Samples that arrived after a newer one."""
         self.refused: Counter[SampleReason] = Counter()
         """Samples refused, by reason."""
+        self.refused_count = self.refused_in_a_row = 0
+        self.last_refusal: SampleReason | None = None
+        self.rate = RateMeter(spec.topic.rate_hz)
         self.accepted_at = -math.inf
         """Monotonic time [s] before which the sample in force was not received."""
         self.writer_guid = b""
@@ -167,6 +176,7 @@ class Input:
         samples = self.subscription.take_all()
         if not samples:
             return 0
+        self.rate.note(len(samples), now)
         if len(samples) > 1:
             self.superseded += len(samples) - 1
             self.overtaken += overtaken(samples)
@@ -201,6 +211,7 @@ class Input:
             return self._refuse(reason, reason.name.lower().replace("_", " "))
         self.stamps.hold(message.stamp, data, now)
         self.accepted += 1
+        self.refused_in_a_row = 0
         self.stamp_ns, self.message = message.stamp.nanoseconds, message
         return True
 
@@ -218,6 +229,9 @@ class Input:
 
     def _refuse(self, reason: SampleReason, detail: str) -> bool:
         self.refused[reason] += 1
+        self.refused_count += 1
+        self.refused_in_a_row += 1
+        self.last_refusal = reason
         site = f"{self.topic} {reason.name}"
         self._logger.warning("refused a sample: %s", detail, throttled=True, site=site)
         return False

@@ -65,6 +65,11 @@ class TickReport(NamedTuple):
     """The command, also when it was not sent; None when there was none."""
 
     @property
+    def sent(self) -> bool:
+        """Whether any command went out, be it the controllers' or one in their place."""
+        return self.outcome in (Outcome.PUBLISHED, Outcome.SUBSTITUTED)
+
+    @property
     def published(self) -> bool:
         """Whether the command of this tick went out."""
         return self.outcome is Outcome.PUBLISHED

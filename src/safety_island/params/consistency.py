@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from itertools import pairwise
 from typing import Any
 
 from safety_island.control.limits import MAX_DELAY_STEPS, MAX_HISTORY, MAX_SHAPE_HISTORY
+from safety_island.guard.params import GuardParams
+from safety_island.parameter import key_of
 
 Values = Mapping[str, Any]
 
@@ -32,6 +34,8 @@ ORDERED = (
     ("min_jerk", "max_jerk"),
     ("min_pitch_rad", "max_pitch_rad"),
     ("ctrl_period", "timeout_thr_sec"),
+    ("ctrl_period", "guard.longest_step"),
+    ("guard.shortest_step", "guard.longest_step"),
 )
 """Pairs of which the first is at most the second."""
 
@@ -40,6 +44,13 @@ TABLES = (
     ("velocity_list_for_steer_rate_lim", "steer_rate_lim_dps_list_by_velocity"),
 )
 """Abscissae and values of the tables."""
+
+GUARD_TABLES = tuple(
+    ("guard.speed_points", key_of(item))
+    for item in fields(GuardParams)
+    if str(item.type).startswith("tuple") and item.name != "speed_points"
+)
+"""The same of the guard: all its limits stand over one list of speeds."""
 
 FILTERS = ("steering_lpf_cutoff_hz", "error_deriv_lpf_cutoff_hz")
 
@@ -150,8 +161,8 @@ _STOP = ("stopping_state_stop_dist", "drive_state_stop_dist", "drive_state_offse
 
 RULES: tuple[Rule, ...] = (
     *(_ordered(low, high) for low, high in ORDERED),
-    *(_same_length(at, table) for at, table in TABLES),
-    *(_ascending(at) for at, _ in TABLES),
+    *(_same_length(at, table) for at, table in (*TABLES, *GUARD_TABLES)),
+    *(_ascending(at) for at in (*(at for at, _ in TABLES), "guard.speed_points")),
     *(_below_nyquist(cutoff) for cutoff in FILTERS),
     *(_span(time, steps) for time, steps in SPANS),
     *(_loaded(key) for key in DYNAMICS),

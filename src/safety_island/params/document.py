@@ -25,6 +25,7 @@ _FILES_OF_GROUP = {
     "longitudinal": FILES[4:5],
     "gate": FILES[5:6],
     "life_cycle": FILES[6:7],
+    "guard": FILES[7:8],
 }
 _KINDS = {"list": "list of float", "str": "text", "bool": "switch"}
 

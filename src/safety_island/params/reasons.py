@@ -37,6 +37,9 @@ REASONS = {
     "life_cycle.stall_limit": "what waited meanwhile is too old",
     "gate.min_trajectory_points": "fewer cannot be followed by the MPC",
     "life_cycle.mpc_failure_time": "a steering angle that is only held is no control",
+    "guard.steering_rate": "the firmware's solver keeps no rate; ours does",
+    "guard.lateral_acceleration": "ISO 11270; the firmware's angle jumps with the trajectory",
+    "guard.lateral_jerk": "ISO 11270; the same",
     "correct_reverse_signs": (
         "in reverse the firmware has the sign wrong in the acceleration feedback and in the slope"
         " term that comes from the trajectory's pitch"

@@ -16,6 +16,7 @@ from safety_island.control.params import (
     key_of,
 )
 from safety_island.gate.params import GateParams
+from safety_island.guard.params import GuardParams
 from safety_island.life_cycle.params import LifeCycleParams
 
 
@@ -25,6 +26,7 @@ class IslandParameters(Parameters):
 
     gate: GateParams
     life_cycle: LifeCycleParams
+    guard: GuardParams
 
 
 GROUPS: dict[str, Any] = {
@@ -34,6 +36,7 @@ GROUPS: dict[str, Any] = {
     "longitudinal": LongitudinalParams,
     "gate": GateParams,
     "life_cycle": LifeCycleParams,
+    "guard": GuardParams,
 }
 """Attribute of ``IslandParameters`` -> its dataclass."""
 

@@ -14,7 +14,7 @@ from safety_island.params.tree import parse
 SETS = ("firmware", "autoware-0.40", "default")
 """Names of the shipped sets."""
 
-OWN = ("gate.param.yaml", "life_cycle.param.yaml")
+OWN = ("gate.param.yaml", "life_cycle.param.yaml", "guard.param.yaml")
 """Files that are the island's own: the same under every set, in the folder ``island``."""
 
 FILES = (

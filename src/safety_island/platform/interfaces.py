@@ -208,5 +208,7 @@ class Platform:
     """Make a timer with a period [s]."""
     new_can: Callable[[str], CanDevice]
     """Make the CAN device of that name."""
+    memory_bytes: Callable[[], int]
+    """Resident set size of the process [byte]; 0 where it is not known."""
     on_stop: Callable[[Callable[[], None]], AbstractContextManager[None]]
     """Call a function when the process is told to stop, as long as the context lasts."""

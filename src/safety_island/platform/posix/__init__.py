@@ -7,7 +7,7 @@ from safety_island.platform.posix.can import SocketCan
 from safety_island.platform.posix.clock import PosixClock
 from safety_island.platform.posix.logger import PosixLogger
 from safety_island.platform.posix.network import PosixNetwork
-from safety_island.platform.posix.process import on_stop
+from safety_island.platform.posix.process import memory_bytes, on_stop
 from safety_island.platform.posix.timer import PosixTimer
 
 
@@ -21,5 +21,6 @@ def make(log: LogConfig) -> Platform:
         network=PosixNetwork(clock),
         new_timer=lambda period_s: PosixTimer(clock, period_s),
         new_can=SocketCan,
+        memory_bytes=memory_bytes,
         on_stop=on_stop,
     )

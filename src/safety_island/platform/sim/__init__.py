@@ -35,5 +35,6 @@ def make(log: LogConfig | None = None) -> SimPlatform:
         network=SimNetwork(clock),
         new_timer=lambda period_s: SimTimer(clock, period_s),
         new_can=lambda interface: MemoryCan(clock, interface),
+        memory_bytes=lambda: 0,
         on_stop=on_stop,
     )

@@ -1,0 +1,36 @@
+"""Which warnings about an input stand now."""
+
+from __future__ import annotations
+
+from safety_island.gate.rate import RateMeter
+from safety_island.gate.stamps import StampGate
+from safety_island.gate.warning import InputWarning
+from safety_island.gate.writers import Writers
+
+DELAY_SHARE = 0.5
+"""Share of the age limit from which on a delay is warned of."""
+
+_AGE, _RATE, _CLOCK = int(InputWarning.AGE), int(InputWarning.RATE), int(InputWarning.CLOCK)
+_DELAY, _SECOND = int(InputWarning.DELAY), int(InputWarning.SECOND_PUBLISHER)
+_CHANGED = int(InputWarning.PUBLISHER_CHANGED)
+
+
+def warnings(
+    now: float, stamps: StampGate, writers: Writers, rate: RateMeter, is_old: bool, is_off: bool
+) -> int:
+    """Return the bits of InputWarning at ``now`` [s, monotonic].
+
+    ``is_old``: it is older than is warned of; ``is_off``: its stamp is far from the wall clock.
+    """
+    bits = _AGE if is_old else 0
+    if rate.too_low:
+        bits |= _RATE
+    if is_off:
+        bits |= _CLOCK
+    if stamps.delay_s > stamps.limit_s * DELAY_SHARE:
+        bits |= _DELAY
+    if writers.others:
+        bits |= _SECOND
+    if writers.changed(now):
+        bits |= _CHANGED
+    return bits
