@@ -28,6 +28,11 @@ def duration_s(text: str) -> float:
     return _seconds(text, 0.0, 1e9, "a duration in seconds, 0 for no end")
 
 
+def timeout_s(text: str) -> float:
+    """Read a time-out in seconds, 10 ms to an hour."""
+    return _seconds(text, 0.01, 3600.0, "a time-out in seconds, for example 3")
+
+
 def _seconds(text: str, low: float, high: float, meaning: str) -> float:
     try:
         value = float(text)
@@ -91,6 +96,17 @@ def add_duration(parser: argparse.ArgumentParser, default: float) -> None:
         default=default,
         metavar="SECONDS",
         help=f"stop after this time; 0 runs on (default: {shown})",
+    )
+
+
+def add_timeout(parser: argparse.ArgumentParser, what: str) -> None:
+    """Add ``--timeout``."""
+    parser.add_argument(
+        "--timeout",
+        type=timeout_s,
+        default=3.0,
+        metavar="SECONDS",
+        help=f"longest wait for {what} (default: 3)",
     )
 
 

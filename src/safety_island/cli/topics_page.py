@@ -29,9 +29,10 @@ what it passes over. The rates of the inputs are those of Autoware's planning si
 OWN_TOPICS = """\
 ## The island's own
 
-Beyond what Autoware has, on the island's domain and not bridged. The status tells what the island
-does and why; a request to arm asks it to leave SILENT, and the status answers. Both types stand as
-`.msg` files in `src/safety_island/messages/msg`.
+Beyond what Autoware has, on the island's domain and not bridged. The [status](status.md) tells what
+the island does and why: `island status` shows it. A request to arm asks it to leave SILENT, and the
+status answers: `island arm` sends one. Both types stand as `.msg` files in
+`src/safety_island/messages/msg`.
 """
 
 

@@ -1,0 +1,33 @@
+"""The tables of reasons as sentences of a terminal: the subject named, no back-ticks."""
+
+from __future__ import annotations
+
+from safety_island.cli.status.names import input_name
+from safety_island.gate.reason import EXPLANATIONS as SAMPLE_REASONS
+from safety_island.gate.reason import SampleReason
+from safety_island.life_cycle.reason import EXPLANATIONS, Explanation, Reason
+from safety_island.messages.status_fields import Status
+
+_NEWER = "use the version of the island"
+
+
+def explained(status: Status, number: int) -> Explanation:
+    """Return what a reason means and what to do; ``number`` may be one of a newer island."""
+    if number not in list(Reason):
+        return Explanation(f"for reason {number}, unknown to this version", _NEWER)
+    other = "the topic of the command" if number == Reason.SECOND_PUBLISHER else "an input"
+    subject = input_name(status.subject) or other
+    found = EXPLANATIONS[Reason(number)]
+    return Explanation(*(_plain(text).replace("{subject}", subject) for text in found))
+
+
+def explained_refusal(number: int) -> tuple[str, str]:
+    """Return what the reason of a refusal means and what to do."""
+    if number not in list(SampleReason):
+        return f"reason {number}, unknown to this version", _NEWER
+    meaning, action = SAMPLE_REASONS[SampleReason(number)]
+    return _plain(meaning), _plain(action)
+
+
+def _plain(text: str) -> str:
+    return text.replace("`", "'")
