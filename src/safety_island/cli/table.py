@@ -24,6 +24,7 @@ COMMANDS = (
     Command("demo", "demo", "Watch the island drive a vehicle: three processes, one live view."),
     Command("run", "run", "Run the safety island."),
     Command("status", "status", "Show what the island does, and why nothing is published."),
+    Command("arm", "arm", "Ask a silent island to send commands again."),
     Command("bridge", "bridge", "Forward topics between two DDS domains."),
     Command("main-compute", "main_compute", "Stand in for Autoware: a planner and a vehicle."),
     Command("replay", "replay", "Feed recorded runs through the controllers and compare."),
