@@ -145,6 +145,25 @@ def test_a_value_is_copied_and_not_shared(writer: StatusWriter) -> None:
     assert writer.record["tick"][0] == 8
 
 
+def test_neighbours_are_written_at_once(writer: StatusWriter) -> None:
+    writer.pack("tick", "commands", "memory", "lateral_error")(2**64 - 1, 5, 6, -0.5)
+    writer.pack("arm_result", "other_control_writers", "degraded")(1, 2, True)
+    writer.pack_input(3, "refused_in_a_row", "age", "age_limit")(4, 0.5, math.inf)
+    found = decode_status(writer.encode())
+    assert (found.tick, found.commands, found.memory) == (2**64 - 1, 5, 6)
+    assert (found.lateral_error, found.yaw_error != found.yaw_error) == (-0.5, True)
+    assert (found.arm_result, found.other_control_writers, found.degraded) == (1, 2, True)
+    assert (found.inputs[3].refused_in_a_row, found.inputs[3].age) == (4, 0.5)
+    assert found.inputs[2].refused_in_a_row == 0
+
+
+def test_only_neighbours_are_written_at_once(writer: StatusWriter) -> None:
+    with pytest.raises(ValueError, match="tick, memory: not neighbours in the message"):
+        writer.pack("tick", "memory")
+    with pytest.raises(KeyError):
+        writer.pack("tock")
+
+
 def test_a_status_is_cheap(writer: StatusWriter) -> None:
     assert min(timeit.repeat(writer.encode, number=1000, repeat=5)) / 1000 < 5e-6
 

@@ -5,7 +5,9 @@ Derived from the registry, so that a layout stands in one place, the IDL file.
 
 from __future__ import annotations
 
-from functools import cache
+from collections.abc import Callable
+from functools import cache, partial
+from struct import Struct
 from types import SimpleNamespace
 from typing import Any
 
@@ -14,6 +16,9 @@ import numpy as np
 from safety_island.messages.description import CODES, Array, Field, Named, Primitive
 from safety_island.messages.errors import IdlError
 from safety_island.messages.registry import struct_of
+
+_WIDE = {"L": "Q", "l": "q"}
+"""Letter of NumPy -> letter of ``struct`` for the same size, where they differ."""
 
 
 @cache
@@ -41,6 +46,26 @@ def cells(memory: memoryview[Any], kind: Any) -> SimpleNamespace:
     return SimpleNamespace(
         **{name: _cell(memory[at : at + column.itemsize], column) for name, (column, at) in fields}
     )
+
+
+def packer(memory: memoryview[Any], kind: Any, *names: str) -> Callable[..., None]:
+    """Return a function that writes scalar fields that are neighbours, all at once.
+
+    A field costs a third of what it costs through its view. Raises ValueError when the fields do
+    not follow each other; the function raises struct.error or OverflowError for a value that does
+    not fit its field.
+    """
+    columns = [kind.fields[name] for name in names]
+    ends = [at + column.itemsize for column, at in columns]
+    if [at for _, at in columns[1:]] != ends[:-1]:
+        raise ValueError(f"{', '.join(names)}: not neighbours in the message")
+    layout = Struct("<" + "".join(letter(column) for column, _ in columns))
+    return partial(layout.pack_into, memory, columns[0][1])
+
+
+def letter(column: Any) -> str:
+    """Return the letter of ``struct``, in standard sizes, for a scalar type of NumPy."""
+    return _WIDE.get(str(column.char), str(column.char))
 
 
 def _cell(memory: memoryview[Any], kind: Any) -> Any:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,7 @@ import numpy.typing as npt
 
 from safety_island.messages import wire
 from safety_island.messages.description import Primitive
-from safety_island.messages.fixed import cells, record_type
+from safety_island.messages.fixed import cells, packer, record_type
 from safety_island.messages.inputs import little_endian
 from safety_island.messages.registry import struct_of
 from safety_island.messages.status_fields import InputStatus, Status
@@ -23,6 +24,7 @@ NO_VALUE = 255
 
 STATUS_RECORD = record_type(STATUS)
 """One status, as C lays it out."""
+INPUT_RECORD = record_type(INPUT_STATUS)
 SIZE = HEADER_SIZE + STATUS_RECORD.itemsize
 """Of a status on the wire [byte]."""
 NO_WRITER = bytes(16)
@@ -38,18 +40,33 @@ class StatusWriter:
     ``fields`` has a view of each field, under the names of the IDL file: ``fields.tick[0] = 7``,
     ``fields.stamp.sec[0] = 1``. ``inputs`` has those of each input, in the order of the message:
     ``inputs[1].age[0] = 0.1``, ``inputs[1].refused[reason] += 1``. A value stays until it is
-    written again, so that counts live here. ``record`` is all of it, shape (1,).
+    written again, so that counts live here. ``pack`` and ``pack_input`` give functions that write
+    several fields at once. ``record`` is all of it, shape (1,).
     """
 
     def __init__(self) -> None:
         memory = np.zeros(_ALIGNMENT + STATUS_RECORD.itemsize, np.uint8)
         self.record: npt.NDArray[Any] = memory[_ALIGNMENT:].view(STATUS_RECORD)
-        self.fields: Any = cells(memory.data[_ALIGNMENT:], STATUS_RECORD)
+        self._memory = memory.data[_ALIGNMENT:]
+        self.fields: Any = cells(self._memory, STATUS_RECORD)
         self.inputs: tuple[Any, ...] = self.fields.inputs
         self._message = memory[_ALIGNMENT - HEADER_SIZE :]
         self._message[:HEADER_SIZE] = tuple(HEADER_LE)
         self._command = [getattr(self.fields, name) for name in _COMMAND]
         self._clear()
+
+    def pack(self, *names: str) -> Callable[..., None]:
+        """Return a function that writes these fields, neighbours in the message, at once.
+
+        Keep it: it is three times as quick a field as ``fields``. See ``fixed.packer``.
+        """
+        return packer(self._memory, STATUS_RECORD, *names)
+
+    def pack_input(self, place: int, *names: str) -> Callable[..., None]:
+        """Return a function that writes these fields of one input at once, as ``pack`` does."""
+        size = INPUT_RECORD.itemsize
+        start = STATUS_RECORD.fields["inputs"][1] + place * size
+        return packer(self._memory[start : start + size], INPUT_RECORD, *names)
 
     def set_writer(self, place: int, guid: bytes) -> None:
         """Note the publisher of an input: 16 bytes, or none when it is not known."""
