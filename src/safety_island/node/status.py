@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 from safety_island.dds import topics
 from safety_island.life_cycle.state import State
 from safety_island.messages.status import StatusWriter
-from safety_island.node.input_status import InputStatusFiller
+from safety_island.messages.wire import NANOSECONDS
+from safety_island.node.input_status import InputStatus
 from safety_island.node.outputs import TopicWriter
+from safety_island.node.report import describe
 from safety_island.node.trace_status import TraceStatus
 from safety_island.node.transport import Publisher
 
@@ -17,7 +20,21 @@ if TYPE_CHECKING:
     from safety_island.node.report import TickReport
 
 _ARMED = (State.ACTIVE, State.HOLD, State.STOP)
-_NANOSECONDS = 1_000_000_000
+
+
+_TICK = ("arm_nonce", "tick", "commands", "memory")
+_COMMAND = (
+    "command_angle", "command_rate", "command_velocity", "command_acceleration", "tick_time",
+    "lateral_time", "longitudinal_time", "lateness", "missed_periods", "missed_periods_total",
+    "overruns",
+)  # fmt: skip
+_GUARD = ("guard_limits", "guard_clamped", "guard_refused", "sequence", "output_failures")
+_LIFE = ("state", "reason", "subject", "latched_cause", "operation_mode")
+_FLAGS = (
+    "guard_verdict", "output_mode", "arm_result", "other_control_writers", "degraded", "armed",
+    "engaged", "control_enabled", "published",
+)  # fmt: skip
+_NO_COMMAND = (math.nan,) * 4
 
 
 class StatusTopic(TopicWriter):
@@ -27,73 +44,69 @@ class StatusTopic(TopicWriter):
         super().__init__(topics.STATUS, publisher, node.logger)
         self.memory_bytes = 0
         """Resident set size, as it was looked up last."""
-        self._node = node
-        self._writer = StatusWriter()
-        self._writer.fields.output_mode[0] = int(node.mode)
+        self._node, self._mode = node, int(node.mode)
+        self._writer = writer = StatusWriter()
+        self._stamp = writer.fields.stamp
+        self._tick, self._command, self._guard, self._life, self._flags = (
+            writer.pack(*names) for names in (_TICK, _COMMAND, _GUARD, _LIFE, _FLAGS)
+        )
         self._inputs = [
-            InputStatusFiller(item, cells)
-            for item, cells in zip(node.inputs.items, self._writer.inputs, strict=True)
+            InputStatus(item, writer, place) for place, item in enumerate(node.inputs.items)
         ]
-        self._trace = TraceStatus(node.follower.trace, self._writer)
+        self._trace = TraceStatus(node.follower.trace, writer)
         self._commands = self._missed = 0
 
     def send(self, report: TickReport) -> None:
         """Publish the status after a tick; a failure is no reason to stop."""
-        self._fill_tick(report)
-        self._fill_life(report)
-        self._fill_command(report)
-        node, fields = self._node, self._writer.fields
+        try:
+            self._fill(report)
+            self.write(self._writer.encode())
+        except Exception as error:  # what is only told must not stop what drives
+            self._logger.error("no status: %s", describe(error), throttled=True)
+
+    def _fill(self, report: TickReport) -> None:
+        sec, nanosec = divmod(self._node.clock.wall_ns(), NANOSECONDS)
+        self._stamp.sec[0], self._stamp.nanosec[0] = sec, nanosec
         if report.lateral_time_s:
             self._trace.fill()
         else:
             self._trace.clear()
-        bits = node.inputs.warnings
-        for filler, warned in zip(self._inputs, bits, strict=True):
-            filler.fill(report.now, warned)
-        sec, nanosec = divmod(node.clock.wall_ns(), _NANOSECONDS)
-        fields.stamp.sec[0], fields.stamp.nanosec[0] = sec, nanosec
-        self.write(self._writer.encode())
+        for item, bits in zip(self._inputs, self._node.inputs.warnings, strict=True):
+            item.fill(report.now, bits)
+        self._fill_tick(report)
+        self._fill_state(report)
 
     def _fill_tick(self, report: TickReport) -> None:
-        fields = self._writer.fields
-        fields.tick[0] = report.number
-        fields.tick_time[0] = report.tick_time_s
-        fields.lateral_time[0] = report.lateral_time_s
-        fields.longitudinal_time[0] = report.longitudinal_time_s
-        fields.lateness[0] = report.lateness_s
+        node, command = self._node, report.command
+        check, sent = node.check, report.sent
+        self._commands += sent
         self._missed += report.skipped
-        fields.missed_periods[0] = report.skipped
-        fields.missed_periods_total[0] = self._missed
-        fields.memory[0] = self.memory_bytes
+        self._tick(node.arming.nonce, report.number, self._commands, self.memory_bytes)
+        self._command(
+            *(_NO_COMMAND if command is None or not sent else command[2:6]),
+            report.tick_time_s,
+            report.lateral_time_s,
+            report.longitudinal_time_s,
+            report.lateness_s,
+            report.skipped,
+            self._missed,
+            node.life_cycle.overrun.in_row,
+        )
+        failed = sum([output.failed for output in node.outputs])
+        self._guard(check.limits, check.clamped, check.refused, check.sequence, failed)
 
-    def _fill_life(self, report: TickReport) -> None:
-        node, fields, life = self._node, self._writer.fields, report.life
-        overrun, mode = node.life_cycle.overrun, node.inputs.operation_mode
-        fields.state[0], fields.reason[0], fields.latched_cause[0] = life
-        fields.subject[0] = report.subject
-        fields.overruns[0], fields.degraded[0] = overrun.in_row, overrun.degraded
-        fields.armed[0] = life.state in _ARMED
-        fields.engaged[0] = not node.inputs.disengaged()
-        if mode is not None:
-            fields.operation_mode[0] = mode.mode
-            fields.control_enabled[0] = mode.is_autoware_control_enabled
-        fields.arm_nonce[0], fields.arm_result[0] = node.arming.nonce, int(node.arming.result)
-        fields.other_control_writers[0] = min(len(node.identity.islands.others), 255)
-
-    def _fill_command(self, report: TickReport) -> None:
-        fields, check = self._writer.fields, self._node.check
-        fields.guard_verdict[0], fields.guard_limits[0] = int(check.verdict), check.limits
-        fields.guard_clamped[0], fields.guard_refused[0] = check.clamped, check.refused
-        fields.sequence[0] = check.sequence
-        fields.output_failures[0] = sum([output.failed for output in self._node.outputs])
-        went_out = report.sent
-        self._commands += went_out
-        fields.commands[0], fields.published[0] = self._commands, went_out
-        command = report.command
-        if command is None or not went_out:
-            self._writer.clear_command()
-            return
-        fields.command_angle[0] = command.steering_tire_angle
-        fields.command_rate[0] = command.steering_tire_rotation_rate
-        fields.command_velocity[0] = command.velocity
-        fields.command_acceleration[0] = command.acceleration
+    def _fill_state(self, report: TickReport) -> None:
+        node, (state, reason, cause) = self._node, report.life
+        mode = node.inputs.operation_mode
+        self._life(state, reason, report.subject, cause, 0 if mode is None else mode.mode)
+        self._flags(
+            node.check.verdict,
+            self._mode,
+            node.arming.result,
+            min(len(node.identity.islands.others), 255),
+            node.life_cycle.overrun.degraded,
+            state in _ARMED,
+            not node.inputs.disengaged(),
+            mode is not None and mode.is_autoware_control_enabled,
+            report.sent,
+        )

@@ -97,7 +97,8 @@ class World:
         if self.gate.state is before:
             return
         if self.gate.state is GateState.BRAKING:
-            self._say("commands stopped coming: braking")
+            self._say("commands stopped coming: braking, and autonomous mode is left")
+            self.mode, self.gate.engaged = Mode.STOP, False
         elif before is GateState.BRAKING:
             self._say("commands are back")
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from enum import IntEnum, IntFlag
 
+from safety_island.guard import EXPLANATIONS, Limit
 from safety_island.messages import registry
 from safety_island.messages.status import NO_VALUE, STATUS
 from safety_island.node.inputs import INPUTS
@@ -16,8 +17,8 @@ VERDICTS = {
 }
 """What the guard did, by number."""
 
-GUARD_LIMITS: Mapping[IntFlag, tuple[str, str]] = {}
-"""The guard's limits -> what each means, what to do: its own table of explanations goes here."""
+GUARD_LIMITS: Mapping[Limit, tuple[str, str]] = EXPLANATIONS
+"""The guard's limits -> what each means, what to do."""
 
 
 def name_of(enum: type[IntEnum], number: int) -> str:
