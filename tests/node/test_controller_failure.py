@@ -53,7 +53,7 @@ def test_an_exception_over_a_sample_refuses_that_sample(
     rig.steering()
     assert rig.tick().published
     assert rig.node.inputs.items[2].refused == {SampleReason.FAULT: 1}
-    assert "ZeroDivisionError: on purpose" in rig.lines[-1]
+    assert any("ZeroDivisionError: on purpose" in line for line in rig.lines)
 
 
 def test_a_failed_mpc_still_gives_a_command_and_says_why(rig: Rig, follower: FakeFollower) -> None:

@@ -147,4 +147,4 @@ class TestStale:
         rig.everything(ROWS)
         for offset_s in (0, -3600, 3600, 0):
             rig.clock.set_wall_offset_ns(offset_s * 10**9)
-            assert rig.tick().published
+            assert rig.tick(0.05).published

@@ -21,7 +21,7 @@ def test_actions_between_the_ticks(rig: Rig) -> None:
     for time_ms in (100, 140, 350):
         rig.clock.call_at(1_000_000_000_000 + time_ms * 1_000_000, rig.steering)
     rig.node.run(0.15, duration_s=0.6)
-    assert ages == [0.0, 0.15, 0.15, 0.3]  # as if received right after the tick before
+    assert ages == [0.15, 0.3, 0.15, 0.3]  # as if received right after the tick before
 
 
 def test_stop_ends_the_run_after_the_tick(rig: Rig) -> None:

@@ -41,7 +41,3 @@ class ContentGate:
     ) -> SampleReason | None:
         """Judge the frame: Autoware's localization names the map here, its simulator the body."""
         return None if message.frame_id in self._either else SampleReason.WRONG_FRAME
-
-    def anything(self, message: object, data: bytes, stamps: StampGate) -> SampleReason | None:
-        """Let pass what has no frame."""
-        return None

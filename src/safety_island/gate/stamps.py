@@ -32,6 +32,8 @@ class StampGate:
 
     def __init__(self, age_limit_s: float = math.inf) -> None:
         self.steps_back = 0
+        self.stamp_ns = 0
+        """Stamp of the sample that was judged last [ns]."""
         self.limit_s = age_limit_s
         self.forget()
 
@@ -49,7 +51,7 @@ class StampGate:
         sec, nanosec = stamp
         if sec < 0 or nanosec >= NANOSECONDS or not (sec or nanosec):
             return SampleReason.BAD_STAMP
-        stamp_ns = sec * NANOSECONDS + nanosec
+        self.stamp_ns = stamp_ns = sec * NANOSECONDS + nanosec
         step_ns = stamp_ns - self._held_ns
         if step_ns == 0:
             same = data == self._held
@@ -77,9 +79,9 @@ class StampGate:
         """Whether a message with its stamp in front says just what the held one says."""
         return data[_AFTER_STAMP:] == self._held[_AFTER_STAMP:]
 
-    def hold(self, stamp: Time, data: bytes, now: float) -> None:
+    def hold(self, data: bytes, now: float) -> None:
         """Take the sample that was judged last."""
-        self._held, self._held_ns, self._held_at = data, stamp.nanoseconds, now
+        self._held, self._held_ns, self._held_at = data, self.stamp_ns, now
         self.delay_s = self._new_delay_s
         self._older_ns = -1
 

@@ -35,11 +35,14 @@ class Life(NamedTuple):
     cause: Reason = Reason.NONE
 
 
+_WELL = Life(State.ACTIVE, Reason.NONE)
+
+
 def next_life(life: Life, now: Conditions) -> Life:
     """Return the next state; every pair is in ``tests/life_cycle/test_transition.py``."""
     state, _, cause = life
     if state is State.ACTIVE and not now.disengaged:
-        return _fall(now) if now.blocked else Life(State.ACTIVE, Reason.NONE)
+        return _fall(now) if now.blocked else _WELL
     if state in (State.HOLD, State.STOP) and not now.disengaged:
         return _stop(state, cause, now)
     if state is State.SILENT:
@@ -55,7 +58,7 @@ def _unarmed(state: State, now: Conditions) -> Life:
         return Life(State.READY, now.disengaged)
     if state is State.INIT and now.barred and not now.arm:
         return Life(State.SILENT, now.barred, now.barred)
-    return Life(State.ACTIVE, Reason.NONE)
+    return _WELL
 
 
 def _fall(now: Conditions) -> Life:
@@ -69,7 +72,7 @@ def _fall(now: Conditions) -> Life:
 def _stop(state: State, cause: Reason, now: Conditions) -> Life:
     """From HOLD back when the cause has gone; a stop that has begun is carried through."""
     if state is State.HOLD and not now.blocked:
-        return Life(State.ACTIVE, Reason.NONE)
+        return _WELL
     if state is State.STOP and now.ramp_over:
         return Life(State.SILENT, now.blocked or Reason.LATCHED, cause)
     is_stop = state is State.STOP or now.hold_over
@@ -83,5 +86,5 @@ def _silent(cause: Reason, now: Conditions) -> Life:
     if now.disengaged:
         return Life(State.READY, now.disengaged)
     if now.arm:
-        return Life(State.ACTIVE, Reason.NONE)
+        return _WELL
     return Life(State.SILENT, Reason.LATCHED if cause is not now.barred else cause, cause)

@@ -21,7 +21,7 @@ from safety_island.node.controllers import NO_COMMAND, Controllers, Ran
 from safety_island.node.explain import explain
 from safety_island.node.follower import Follower
 from safety_island.node.identity import Identity
-from safety_island.node.input_set import Blocked, InputSet
+from safety_island.node.input_set import NOT_BLOCKED, Blocked, InputSet
 from safety_island.node.node import Node
 from safety_island.node.outputs import ControlTopic, Output, ProcessingTime
 from safety_island.node.report import Outcome, TickReport, describe
@@ -37,7 +37,6 @@ MEMORY_EVERY = 64
 _NO_TIMES = (0, 0)
 _SENDS = (State.READY, State.ACTIVE)
 _ALARMING = (State.HOLD, State.STOP, State.SILENT)
-_NOT_BLOCKED = Blocked(Reason.NONE)
 _OUTCOMES = {
     Reason.WAITING_FOR_INPUT: Outcome.WAITING_FOR_INPUT,
     Reason.NO_TRAJECTORY: Outcome.NOT_READY,
@@ -76,7 +75,8 @@ class ControllerNode(Node):
         self.controllers = Controllers(follower, self.clock, self.logger)
         self.inputs = InputSet(transport, follower, self.logger, parameters.gate)
         self.identity = Identity(transport, self.inputs, self.logger, parameters, joined_at)
-        period_s, timeout_s = parameters.node.ctrl_period, parameters.node.timeout_thr_sec
+        self._period_s = period_s = parameters.node.ctrl_period
+        timeout_s = parameters.node.timeout_thr_sec
         self.life_cycle = LifeCycle(parameters.life_cycle, period_s, not mode.uses_dds)
         guard = Guard(parameters.guard, parameters.vehicle.wheel_base, timeout_s)
         self.check = CommandCheck(guard, timeout_s, self.logger)
@@ -117,7 +117,7 @@ class ControllerNode(Node):
         if now is None:
             now = start_ns / 1e9
         self._command, self.controllers.spent_ns = None, _NO_TIMES
-        refused, blocked = 0, _NOT_BLOCKED
+        refused, blocked = 0, NOT_BLOCKED
         try:
             refused = self._take(now, due.skipped)
             blocked = self._blocked(now)
@@ -126,6 +126,7 @@ class ControllerNode(Node):
             outcome, detail = Outcome.FAULT, describe(error)
             self.logger.error("the tick failed: %s", detail, throttled=True)
             self.life_cycle.fault()
+        self.inputs.warn(now, self.clock.wall_ns())
         self._ticks += 1
         self._last_tick = now
         lateral_ns, longitudinal_ns = self.controllers.spent_ns
@@ -160,11 +161,12 @@ class ControllerNode(Node):
             self.logger.warning("the process stood still: it begins anew", throttled=True)
             self.inputs.drop()
         self.identity.look(now)
-        return self.inputs.take(now, now if self._last_tick is None else self._last_tick)
+        last = self._last_tick
+        return self.inputs.take(now, now - self._period_s if last is None else last)
 
     def _blocked(self, now: float) -> Blocked:
         """Return what forbids to send, before the controllers are asked."""
-        for name in self.inputs.missing():
+        for name in () if self.inputs.are_complete else self.inputs.missing():
             self.logger.info("Waiting for %s data", name, throttled=True, site=f"input {name}")
         if reason := self.identity.blocked(now):
             return Blocked(reason)
@@ -185,9 +187,9 @@ class ControllerNode(Node):
             disengaged,
             self.inputs.speed(),
             asked,
-            failed=bool(ran.fault),
-            unsolved=ran.unsolved,
-            refused=checked.refusal,
+            bool(ran.fault),
+            ran.unsolved,
+            checked.refusal,
         )
         before = self.life_cycle.state
         life = self.life_cycle.judge(facts, now)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 from safety_island.control.status import Mode
 from safety_island.gate.params import GateParams
 from safety_island.gate.warning import EXPLANATIONS, InputWarning
 from safety_island.gate.warnings import warnings
+from safety_island.gate.writers import WINDOW_S
 from safety_island.life_cycle.reason import Reason
 from safety_island.messages.inputs import Odometry, OperationMode, Steering
 from safety_island.node.follower import InputFollower
@@ -31,7 +33,7 @@ class Blocked(NamedTuple):
     subject: int = NO_SUBJECT
 
 
-_NOTHING = Blocked(Reason.NONE)
+NOT_BLOCKED = Blocked(Reason.NONE)
 
 
 class InputSet:
@@ -59,7 +61,10 @@ class InputSet:
         self._warning_clock_ns = params.clock_warning * 1e9
         self.warnings = (0,) * len(self.items)
         """Bits of InputWarning for each input, as of the last tick."""
-        self._are_complete = False
+        self.are_complete = False
+        """Whether a sample of every input was accepted."""
+        self._unsettled_until = -math.inf
+        self._limited = [(i, item, item.age_limit_s) for i, item in enumerate(self.items[:-1])]
 
     def discover(self, now: float) -> None:
         """Look which publishers live; to be called when some came or went."""
@@ -68,6 +73,7 @@ class InputSet:
             item.writers.update(self._transport.writers(item.topic, spec.topic.type_name), now)
             if item.writers.others > others:
                 self._logger.warning("%s has %d publishers", item.topic, item.writers.others + 1)
+        self._unsettled_until = now + WINDOW_S
         if not self._mode.writers.alive:
             self._mode.stamps.forget()  # the next publisher may tell the same again
 
@@ -86,37 +92,45 @@ class InputSet:
 
     def blocked(self, now: float) -> Blocked:
         """Return what forbids to send, the first that counts."""
-        if not self._are_complete and (found := self._missing()):
+        if not self.are_complete and (found := self._missing()):
             return found
-        for index, item in enumerate(self.items):
-            if item.writers.flaps(now):
-                return Blocked(Reason.WRITER_FLAPPING, index)
-            if item.writers.others and not self._keeps_first:
-                return Blocked(Reason.SECOND_PUBLISHER, index)
-        return self._stale(now)
+        if now <= self._unsettled_until and (found := self._flapping(now)):
+            return found
+        if not self._keeps_first and (found := self._shared()):
+            return found
+        for _, item, limit_s in self._limited:
+            if now - item.accepted_at > limit_s:
+                return self._stale(now)
+        return NOT_BLOCKED
 
     def _missing(self) -> Blocked | None:
         for index, item in enumerate(self.items):
             if not item.accepted:
                 return Blocked(Reason.WAITING_FOR_INPUT, index)
-        self._are_complete = True
+        self.are_complete = True
         return None
+
+    def _flapping(self, now: float) -> Blocked | None:
+        for index, item in enumerate(self.items):
+            if item.writers.flaps(now):
+                return Blocked(Reason.WRITER_FLAPPING, index)
+        return None
+
+    def _shared(self) -> Blocked | None:
+        for index, item in enumerate(self.items):
+            if item.writers.others:
+                return Blocked(Reason.SECOND_PUBLISHER, index)
+        return None
+
+    def _stale(self, now: float) -> Blocked:
+        stale = [i for i, item, limit_s in self._limited if now - item.accepted_at > limit_s]
+        if len(stale) == len(self._limited):
+            return Blocked(Reason.PARTITION)
+        return Blocked(Reason.INPUT_STALE, stale[0])
 
     def missing(self) -> list[str]:
         """Name the inputs of which no sample was ever accepted."""
         return [item.name for item in self.items if not item.accepted]
-
-    def _stale(self, now: float) -> Blocked:
-        stale = [
-            index
-            for index, item in enumerate(self.items)
-            if now - item.accepted_at > item.age_limit_s
-        ]
-        if not stale:
-            return _NOTHING
-        if len(stale) == OPERATION_MODE:  # all that have a limit
-            return Blocked(Reason.PARTITION)
-        return Blocked(Reason.INPUT_STALE, stale[0])
 
     def warn(self, now: float, wall_ns: int) -> None:
         """Look which warnings stand, and log those that are new."""

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Callable
+from functools import partial
 from typing import Any, NamedTuple
 
 from safety_island.control.status import Refusal
@@ -39,7 +40,7 @@ class InputSpec(NamedTuple):
     topic: TopicEntry
     decoder: Callable[[InputFollower], Callable[[bytes], Any]]
     """Makes the function that decodes its samples."""
-    check: Callable[[ContentGate, Any, bytes, StampGate], SampleReason | None]
+    check: Callable[[ContentGate, Any, bytes, StampGate], SampleReason | None] | None
     offer: Callable[[InputFollower, Any], Refusal]
     age_limit_s: Callable[[GateParams], float] = lambda params: math.inf
     age_warning_s: Callable[[GateParams], float] = lambda params: math.inf
@@ -97,7 +98,7 @@ INPUTS = (
         "steering",
         topics.STEERING,
         _plain(codec.decode_steering),
-        ContentGate.anything,
+        None,
         _offer_steering,
         lambda params: params.steering_age_limit,
         lambda params: params.age_warning,
@@ -115,7 +116,7 @@ INPUTS = (
         "operation mode",
         topics.OPERATION_MODE,
         _plain(codec.decode_operation_mode),
-        ContentGate.anything,
+        None,
         _offer_operation_mode,
     ),
 )
@@ -165,10 +166,8 @@ class Input:
         self.message: Any = None
         """The sample in force, decoded."""
         self._decode = spec.decoder(follower)
-        self._content = ContentGate(params)
-        self._check = spec.check
-        self._offer = spec.offer
-        self._follower = follower
+        self._check = None if spec.check is None else partial(spec.check, ContentGate(params))
+        self._offer = partial(spec.offer, follower)
         self._logger = logger
 
     def take(self, now: float, since: float) -> int:
@@ -176,12 +175,14 @@ class Input:
         samples = self.subscription.take_all()
         if not samples:
             return 0
-        self.rate.note(len(samples), now)
-        if len(samples) > 1:
-            self.superseded += len(samples) - 1
+        count = len(samples)
+        self.rate.note(count, now)
+        if count > 1:
+            self.superseded += count - 1
             self.overtaken += overtaken(samples)
+            samples = newest_first(samples)
         refused = 0
-        for sample in newest_first(samples):
+        for sample in samples:
             if self._accept(sample, now):
                 self.accepted_at = since
                 break
@@ -202,30 +203,29 @@ class Input:
         self.writer_guid, self.sent_ns = sample.writer_guid, sample.source_timestamp_ns
         try:
             message = self._decode(data)
-            reason = self._judge(message, sample, now)
+            reason = self._judge(message, data, now)
         except DecodeError as error:
             return self._refuse(SampleReason[error.reason.name], str(error))
         except Exception as error:  # a fault of ours must not let one topic stop the ticks
             return self._refuse(SampleReason.FAULT, describe(error))
         if reason is not None:
             return self._refuse(reason, reason.name.lower().replace("_", " "))
-        self.stamps.hold(message.stamp, data, now)
+        self.stamps.hold(data, now)
         self.accepted += 1
         self.refused_in_a_row = 0
-        self.stamp_ns, self.message = message.stamp.nanoseconds, message
+        self.stamp_ns, self.message = self.stamps.stamp_ns, message
         return True
 
-    def _judge(self, message: Any, sample: Sample, now: float) -> SampleReason | None:
-        if not self.writers.takes(sample.writer_guid):
+    def _judge(self, message: Any, data: bytes, now: float) -> SampleReason | None:
+        """Pass a sample through the gate to the controllers; return why it did not get there."""
+        if not self.writers.takes(self.writer_guid):
             return SampleReason.OTHER_PUBLISHER
-        reason = self.stamps.judge(message.stamp, sample.data, now)
-        if reason is not None:
-            return reason
-        reason = self._check(self._content, message, sample.data, self.stamps)
-        if reason is not None:
-            return reason
-        verdict = self._offer(self._follower, message)
-        return SampleReason[verdict.name] if verdict else None
+        reason = self.stamps.judge(message.stamp, data, now)
+        if reason is None and self._check is not None:
+            reason = self._check(message, data, self.stamps)
+        if reason is None and (verdict := self._offer(message)):
+            return SampleReason[verdict.name]
+        return reason
 
     def _refuse(self, reason: SampleReason, detail: str) -> bool:
         self.refused[reason] += 1
