@@ -1,9 +1,11 @@
 """The one place that knows how control kernels are compiled.
 
 A kernel is written in the part of Python that Numba compiles: scalars, ``float64`` arrays and
-records in, a status code out, nothing allocated. ``SAFETY_ISLAND_JIT=0`` runs the same source as
-plain Python. ``_nrt=False`` takes Numba's memory manager away, so a kernel that allocates an array
-does not compile; that private option is one reason for the exact version pin.
+records in, a status code out, nothing allocated. It has three lives: compiled in process; plain
+Python (``SAFETY_ISLAND_JIT=0``); and taken from a library that was compiled ahead of time (see
+``aot.py``), where Numba is not even imported. ``_nrt=False`` takes Numba's memory manager away, so
+a kernel that allocates an array does not compile; that private option is one reason for the exact
+version pin.
 """
 
 from __future__ import annotations
@@ -16,8 +18,15 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-JIT = os.environ.get("SAFETY_ISLAND_JIT", "1") != "0"
-"""False when the kernels run as plain Python."""
+from safety_island.control import aot
+
+_PLAIN = os.environ.get("SAFETY_ISLAND_JIT", "1") == "0"
+
+LIBRARY = None if _PLAIN else aot.find_library()
+"""The library of kernels that were compiled ahead of time, None when there is none."""
+
+JIT = not _PLAIN and LIBRARY is None
+"""Whether the kernels are compiled in process."""
 
 FLAGS: dict[str, Any] = {"error_model": "numpy", "fastmath": False, "_nrt": False}
 
@@ -94,7 +103,11 @@ class Entry:
 
     def prepare(self) -> None:
         """Compile, or load the compiled code from disk; then refuse any other argument type."""
-        if self._dispatcher is not None and self.call is self.python:
+        if self.call is not self.python:
+            return
+        if LIBRARY is not None:
+            self.call = aot.library(LIBRARY).function(self.name, self.arguments)
+        elif self._dispatcher is not None:
             with _one_at_a_time(self.name):
                 self._dispatcher.compile(self.signature())
             self._dispatcher.disable_compile()

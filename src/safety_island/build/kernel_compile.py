@@ -1,0 +1,111 @@
+"""LLVM IR of the control kernels: compiled once for the sources at hand, then taken from disk.
+
+The IR is for no particular machine, so every target shares it.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import hashlib
+import os
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from importlib.metadata import version
+from pathlib import Path
+
+from safety_island.build import kernel_ir
+from safety_island.build.errors import BuildError
+from safety_island.control import kernel
+
+Report = Callable[[str, int, int], None]
+"""Told the name of a kernel, its index and the count, before it is compiled."""
+
+ENVIRONMENT = {
+    "NUMBA_CPU_NAME": "generic",
+    "NUMBA_CPU_FEATURES": "",
+    "NUMBA_OPT": "0",  # optimised later, for the machine
+    "PYTHONHASHSEED": "0",  # the same sources give the same bytes
+}
+COMPILER = ["-m", kernel_ir.__name__]
+"""What Python runs to compile."""
+_OURS = ("NUMBA_", "SAFETY_ISLAND_KERNELS", "SAFETY_ISLAND_JIT")
+
+
+def entries() -> list[kernel.Entry]:
+    """Return the kernels that a library holds."""
+    import safety_island.control.follower  # noqa: F401  (defines every entry)
+
+    return kernel.ENTRIES
+
+
+def kernel_irs(report: Report) -> dict[str, str]:
+    """Return the IR of every entry by its name. Raises BuildError for one that does not compile."""
+    folder = ir_folder()
+    folder.mkdir(parents=True, exist_ok=True)
+    names = [entry.name for entry in entries()]
+    with _locked(folder):
+        missing = [name for name in names if not (folder / f"{name}.ll").exists()]
+        if missing:
+            compile_into(folder, missing, report)
+    return {name: (folder / f"{name}.ll").read_text(encoding="utf-8") for name in names}
+
+
+def ir_folder() -> Path:
+    """Return the folder, named after all that the IR depends on."""
+    digest = hashlib.sha256(Path(kernel_ir.__file__).read_bytes())
+    digest.update(f"{version('llvmlite')} {sys.version_info[:2]} {ENVIRONMENT}".encode())
+    return kernel.cache_folder() / f"ir-{digest.hexdigest()[:16]}"
+
+
+def compile_into(folder: Path, names: list[str], report: Report) -> None:
+    """Compile the named entries into files; nothing half done is left under a final name."""
+    unfinished = folder / f"unfinished-{os.getpid()}"
+    unfinished.mkdir(parents=True)
+    command = [sys.executable, *COMPILER, str(unfinished), *names]
+    try:
+        with subprocess.Popen(
+            command,
+            env=_environment(),
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        ) as process:
+            current = _follow(process, names, report)
+            _, errors = process.communicate()
+        if process.returncode:
+            why = (errors.strip().splitlines() or ["the compiler ended without a word"])[-1]
+            raise BuildError(f"the kernel '{current}' cannot be compiled: {why}")
+        for name in names:
+            (unfinished / f"{name}.ll").rename(folder / f"{name}.ll")
+    finally:
+        for rest in unfinished.iterdir():
+            rest.unlink()
+        unfinished.rmdir()
+
+
+def _follow(process: subprocess.Popen[str], names: list[str], report: Report) -> str:
+    """Pass on the progress; return the name of the kernel that was worked on last."""
+    assert process.stdout is not None
+    current = names[0]
+    for line in process.stdout:
+        word = line.strip()
+        if word in names:
+            current = word
+            report(word, names.index(word), len(names))
+    return current
+
+
+def _environment() -> dict[str, str]:
+    kept = {k: v for k, v in os.environ.items() if not k.startswith(_OURS)}
+    root = str(Path(kernel_ir.__file__).parents[2])
+    return kept | ENVIRONMENT | {"PYTHONPATH": root}
+
+
+@contextmanager
+def _locked(folder: Path) -> Iterator[None]:
+    """Let one process compile; the next one waits, and finds the result."""
+    with (folder / "lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
