@@ -7,6 +7,7 @@ import dataclasses
 import json
 from collections.abc import Iterable, Iterator
 
+from safety_island.build.built import refuse_in_built
 from safety_island.build.kconfig import Resolved, Setting, resolve
 from safety_island.cli.configuration import add_configuration, add_target, resolved
 from safety_island.cli.options import add_json
@@ -43,6 +44,7 @@ that its value comes from; 'diff' prints those that are not at their default.
 
 def execute(arguments: argparse.Namespace) -> int:
     """Show or compare."""
+    refuse_in_built("island config")
     found = resolved(arguments)
     if arguments.action == "show":
         wanted = [item for item in found.settings if item.line or arguments.all or arguments.json]

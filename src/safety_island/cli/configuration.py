@@ -5,14 +5,20 @@ from __future__ import annotations
 import argparse
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
+from safety_island.build.built import built, refuse_in_built
 from safety_island.build.configuration import RunConfiguration
-from safety_island.build.kconfig import Resolved, resolve
 from safety_island.build.targets import NAMES
+
+if TYPE_CHECKING:
+    from safety_island.build.kconfig import Resolved
 
 
 def add_target(parser: argparse.ArgumentParser, default: str | None = None) -> None:
-    """Add ``-t``; without a default it must be given."""
+    """Add ``-t``; without a default it must be given. A built island has its own."""
+    own = built()
+    default = default if own is None else own.target
     shown = f" (default: {default})" if default else ""
     parser.add_argument(
         "-t",
@@ -46,11 +52,26 @@ def add_configuration(parser: argparse.ArgumentParser) -> None:
 
 def resolved(arguments: argparse.Namespace) -> Resolved:
     """Return the configuration that the options choose; print which value replaced which."""
+    from safety_island.build.kconfig import resolve
+
     found = resolve(arguments.target, arguments.conf, arguments.define)
     for note in found.notes:
         print(f"note: {note}", file=sys.stderr)
     run_configuration(found)
     return found
+
+
+def chosen(arguments: argparse.Namespace) -> RunConfiguration:
+    """Return the configuration to run with: what the options choose, in a built island its own."""
+    own = built()
+    if own is None:
+        return run_configuration(resolved(arguments))
+    if arguments.target != own.target:
+        refuse_in_built(f"-t {arguments.target}")
+    for option, values in (("--conf", arguments.conf), ("-D", arguments.define)):
+        if values:
+            refuse_in_built(f"{option} {values[0]}")
+    return own.configuration()
 
 
 def run_configuration(found: Resolved) -> RunConfiguration:

@@ -6,7 +6,7 @@ import argparse
 from contextlib import ExitStack
 from typing import NamedTuple
 
-from safety_island.cli.configuration import resolved, run_configuration
+from safety_island.cli.configuration import chosen
 from safety_island.cli.jsonlines import JsonLines
 from safety_island.cli.parameters import read_parameters
 from safety_island.cli.process import seconds_since_start
@@ -36,7 +36,7 @@ class Run(NamedTuple):
 
 def run(arguments: argparse.Namespace, start: StopAtOnce) -> None:
     """Start in order and run until told to stop. Raises IslandError when the start fails."""
-    settings = run_settings(arguments, run_configuration(resolved(arguments)))
+    settings = run_settings(arguments, chosen(arguments))
     if arguments.interface is not None and arguments.platform != "sim":
         # Named by hand, it must be there; one of the configuration may come later (a VPN's).
         check_exists(arguments.interface)
