@@ -1,0 +1,1 @@
+"""Test programs of the build: a publisher, a subscriber, and a round trip of the node over DDS."""
