@@ -1,11 +1,16 @@
-"""A copy of the shipped configuration that a test may change."""
+"""A copy of the shipped configuration that a test may change; builds that tests share."""
 
+import fcntl
 import shutil
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
+from safety_island.build.kconfig import resolve
 from safety_island.build.kconfig_places import Places
+from safety_island.build.pipeline import Build
+from safety_island.build.products import APPLICATION, Product
 
 
 @pytest.fixture
@@ -14,3 +19,32 @@ def places(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Places:
     monkeypatch.chdir(tmp_path)
     shutil.copytree(Places().config, tmp_path / "config")
     return Places(tmp_path / "config", tmp_path / "build")
+
+
+@pytest.fixture(scope="session")
+def shared(tmp_path_factory: pytest.TempPathFactory, worker_id: str) -> Path:
+    """A folder that all test processes of a session share."""
+    base = tmp_path_factory.getbasetemp()
+    return base if worker_id == "master" else base.parent
+
+
+@pytest.fixture(scope="session")
+def build_of(shared: Path) -> Callable[[str, Product], Path]:
+    """Build a target once in a session; returns its folder."""
+
+    def build(target: str, product: Product = APPLICATION) -> Path:
+        places = Places(build=shared / "build")
+        with (shared / "build.lock").open("w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            made = Build(resolve(target, places=places), product, places, lambda step: None)
+            if not made.is_current():
+                made.run()
+        return made.folder
+
+    return build
+
+
+@pytest.fixture(scope="session")
+def posix_build(build_of: Callable[[str], Path]) -> Path:
+    """The folder of a build for this machine."""
+    return build_of("posix")

@@ -33,6 +33,7 @@ COMMANDS = (
     Command("can", "can", "Watch, send and describe the CAN command frames."),
     Command("config", "config", "Show the configuration of a target."),
     Command("menuconfig", "menuconfig", "Choose the configuration of a target in a menu."),
+    Command("build", "build", "Build a target: kernels, C headers, one self-contained program."),
     Command(
         "prepare", "prepare", "Compile the control kernels now, so that later starts are quick."
     ),

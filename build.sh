@@ -1,0 +1,3 @@
+#!/bin/sh
+# Build a target, as the firmware's build.sh does: ./build.sh -t TARGET; ./build.sh --help says more.
+exec "$(dirname -- "$(readlink -f -- "$0")")/island" build "$@"

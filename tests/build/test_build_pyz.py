@@ -1,0 +1,197 @@
+"""The self-contained program: it starts on bare Python, needs no compiler, and is reproducible."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from safety_island.build import pyz_start
+from safety_island.build.built import built
+from safety_island.build.pyz import write_pyz
+from safety_island.control import kernel
+from tests.build import pyz_process
+
+NAME = "safety-island.pyz"
+pytestmark = pytest.mark.timeout(600)  # the first of a session compiles the kernels
+
+
+@pytest.fixture(scope="session")
+def home(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A home folder, in which the island is unpacked once."""
+    return tmp_path_factory.mktemp("home")
+
+
+@pytest.fixture(scope="session")
+def island(posix_build: Path) -> Path:
+    """The program."""
+    return posix_build / NAME
+
+
+PROBE = """
+import json, sys
+sys.argv = ["island", "run", "--platform", "sim", "--duration", "2"]
+from safety_island.__main__ import start
+code = start()
+found = sorted({name.partition(".")[0] for name in sys.modules})
+import numpy, safety_island
+print(json.dumps([code, found, numpy.__file__, safety_island.__file__]))
+"""
+
+
+def test_it_runs_on_bare_python_and_imports_no_compiler(island: Path, home: Path) -> None:
+    first = pyz_process.run(island, home, "--version")
+    assert (first.returncode, first.stdout) == (0, "island 0.1.0\n")
+    assert "unpacking" in first.stderr
+    (folder,) = (home / "cache").glob("island-*")
+    result = subprocess.run(
+        [pyz_process.bare_python(), "-s", "-c", PROBE],
+        env=pyz_process.environment(home) | {"PYTHONPATH": str(folder)},
+        cwd=home,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert result.returncode == 0, result.stderr[-2000:]
+    code, modules, numpy_file, package_file = json.loads(result.stdout.splitlines()[-1])
+    assert code == 0
+    assert "numpy" in modules and "cyclonedds" in modules
+    assert not {"numba", "llvmlite", "scipy"} & set(modules)
+    assert Path(numpy_file).is_relative_to(folder)
+    assert Path(package_file).is_relative_to(folder)
+
+
+def test_a_second_start_unpacks_nothing_and_gives_commands(island: Path, home: Path) -> None:
+    pyz_process.run(island, home, "--version")
+    arguments = ("run", "--platform", "sim", "--duration", "5", "--json")
+    result = pyz_process.run(island, home, *arguments)
+    assert result.returncode == 0, result.stderr[-2000:]
+    assert "unpacking" not in result.stderr
+    assert "compil" not in result.stderr
+    summary = json.loads(result.stdout.splitlines()[-1])
+    events = [json.loads(line) for line in result.stdout.splitlines()]
+    assert any(event["event"] == "tick" and event["outcome"] == "PUBLISHED" for event in events)
+    assert summary["event"]
+
+
+CPU_TIME = """
+import resource, subprocess, sys
+subprocess.run(sys.argv[1:], check=True, capture_output=True)
+print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime)
+"""
+
+
+def processor_time(command: list[str], environment: dict[str, str], folder: Path) -> float:
+    """Return the least processor time [s] of a few runs; the first one fills the caches."""
+    watched = [sys.executable, "-c", CPU_TIME, *command]
+    runs = [subprocess.check_output(watched, env=environment, cwd=folder) for _ in range(4)]
+    return min(map(float, runs[1:]))
+
+
+@pytest.mark.skipif(not kernel.JIT, reason="compares with kernels that are compiled in process")
+def test_a_start_is_quicker_than_one_that_loads_a_compiler(island: Path, home: Path) -> None:
+    words = ("run", "--platform", "sim", "--duration", "0.3")
+    built_one = pyz_process.command(island, *words)
+    from_sources = [sys.executable, "-m", "safety_island", *words]
+    quick = processor_time(built_one, pyz_process.environment(home), home)
+    assert quick < 0.8 * processor_time(from_sources, dict(os.environ), home)
+
+
+def test_its_configuration_is_that_of_the_build(island: Path, home: Path) -> None:
+    for option in (("-t", "freertos_posix"), ("-D", "LOG_LEVEL=2"), ("--conf", "my.conf")):
+        result = pyz_process.run(island, home, "run", *option)
+        assert result.returncode == 2
+        assert f"{' '.join(option)}: this island was built for posix" in result.stderr
+    for command in (("build",), ("config", "show"), ("menuconfig",)):
+        result = pyz_process.run(island, home, *command, "-t", "posix")
+        assert result.returncode == 2
+        assert "carries no build tools" in result.stderr
+    assert built() is None
+
+
+def test_it_holds_no_path_of_this_machine_and_no_time(island: Path) -> None:
+    with zipfile.ZipFile(island) as archive:
+        assert {item.date_time for item in archive.infolist()} == {(1980, 1, 1, 0, 0, 0)}
+        names = archive.namelist()
+        root = str(Path(__file__).parents[2]).encode()
+        for name in names:
+            if "/safety_island/" in name:
+                assert root not in archive.read(name), name
+    assert not [
+        name
+        for name in names
+        if re.search(r"^content/(numba|llvmlite)|\.pyc$|direct_url\.json", name)
+    ]
+    assert any("LICENSE" in name for name in names)
+
+
+CONTENT = {"hello/__init__.py": b"def main():\n    print('hello')\n    return 3\n"}
+
+
+@pytest.fixture
+def hello(tmp_path: Path) -> Path:
+    """A small program."""
+    path = tmp_path / "hello.pyz"
+    write_pyz(path, CONTENT, "hello:main")
+    return path
+
+
+def test_the_same_content_gives_the_same_bytes(hello: Path, tmp_path: Path) -> None:
+    other = tmp_path / "other.pyz"
+    write_pyz(other, dict(reversed(CONTENT.items())), "hello:main")
+    assert other.read_bytes() == hello.read_bytes()
+    assert hello.stat().st_mode & 0o111
+
+
+def test_two_processes_may_unpack_at_the_same_time(hello: Path, tmp_path: Path) -> None:
+    commands = [pyz_process.command(hello)] * 4
+    environment = pyz_process.environment(tmp_path)
+    processes = [subprocess.Popen(command, env=environment) for command in commands]
+    assert [process.wait() for process in processes] == [3, 3, 3, 3]
+    assert len(list((tmp_path / "cache").iterdir())) == 1
+
+
+def test_a_folder_that_is_not_complete_is_replaced(hello: Path, tmp_path: Path) -> None:
+    assert pyz_process.run(hello, tmp_path).returncode == 3
+    (folder,) = (tmp_path / "cache").iterdir()
+    (folder / pyz_start.COMPLETE).unlink()
+    (folder / "hello" / "__init__.py").write_text("broken(")
+    result = pyz_process.run(hello, tmp_path)
+    assert (result.returncode, result.stdout) == (3, "hello\n")
+
+
+@pytest.mark.parametrize(
+    ("there", "here", "said"),
+    [
+        (b'python="3.', b'python="2.', "was built for Python 2."),
+        (b'machine="', b'machine="not-', "was built for not-"),
+    ],
+)
+def test_another_python_or_machine_is_told(
+    tmp_path: Path, there: bytes, here: bytes, said: str
+) -> None:
+    path = tmp_path / "hello.pyz"
+    write_pyz(path, CONTENT, "hello:main")
+    with zipfile.ZipFile(path) as archive:
+        members = {name: archive.read(name) for name in archive.namelist()}
+    members["__main__.py"] = members["__main__.py"].replace(there, here)
+    with zipfile.ZipFile(path, "w") as archive:
+        for name, data in members.items():
+            archive.writestr(name, data)
+    result = pyz_process.run(path, tmp_path)
+    assert result.returncode == 2
+    assert result.stderr.startswith("island: error: hello.pyz ") and said in result.stderr
+    assert len(result.stderr.splitlines()) == 1
+
+
+def test_a_place_that_cannot_be_written_is_told(hello: Path, tmp_path: Path) -> None:
+    (tmp_path / "cache").write_text("a file")
+    result = pyz_process.run(hello, tmp_path)
+    assert result.returncode == 2
+    assert "cannot be unpacked" in result.stderr.splitlines()[-1]
