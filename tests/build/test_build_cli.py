@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from safety_island.build import pipeline
+from safety_island.build import linker, pipeline
 from safety_island.build.archive import archive
 from safety_island.build.kconfig import resolve
 from safety_island.build.kconfig_places import Places
@@ -102,6 +102,15 @@ def test_a_build_shows_its_steps_and_a_second_one_does_nothing(
     (folder / "messages" / "compiled.json").write_text("{}")
     assert main(["build", "-t", "posix", "-D", "LOG_LEVEL=2"]) == 0
     assert "done" in capsys.readouterr().out
+
+
+def test_a_machine_without_a_c_compiler_is_told_how_to_get_one(
+    in_tmp: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(linker, "find_compiler", lambda: None)
+    assert main(["build", "-t", "posix"]) == 1
+    (error,) = capsys.readouterr().err.splitlines()
+    assert "no C compiler" in error and "apt-get install gcc" in error and linker.ZIG in error
 
 
 @pytest.mark.slow

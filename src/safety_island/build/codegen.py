@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from functools import cache
 from typing import Any
@@ -13,11 +12,10 @@ from safety_island.build.c_interface import RAISED, check_signature, interface_i
 from safety_island.build.elf import read_elf
 from safety_island.build.errors import BuildError
 from safety_island.build.kernel_ir import NATIVE
+from safety_island.build.kernel_names import shorten
 from safety_island.build.machines import Machine
 from safety_island.build.support_routines import routines_for
 from safety_island.control.aot import PREFIX, SOURCES
-
-_NAME_PART = re.compile(r"\d+")
 
 
 @cache
@@ -47,7 +45,7 @@ def compile_object(name: str, ir: str, arguments: Sequence[Any], machine: Machin
     _optimize(module, maker, machine)
     if any(function.name == RAISED for function in module.functions):
         raise BuildError(f"the kernel '{name}' may raise an exception, which no target can take")
-    _rename(module)
+    shorten(module)
     return _emit(module, maker, machine)
 
 
@@ -77,27 +75,6 @@ def _optimize(module: Any, maker: Any, machine: Machine) -> None:
     options.loop_vectorization = options.slp_vectorization = machine.vectorize
     builder = llvm.create_pass_builder(maker, options)
     builder.getModulePassManager().run(module, builder)
-
-
-def _rename(module: Any) -> None:
-    """Give inner functions short names that do not depend on the order of compilation."""
-    taken: dict[str, int] = {}
-    for function in module.functions:
-        if function.is_declaration or not function.name.startswith("_ZN"):
-            continue
-        short = ".".join(_parts(function.name)[-2:])
-        taken[short] = taken.get(short, 0) + 1
-        function.name = short if taken[short] == 1 else f"{short}.{taken[short]}"
-
-
-def _parts(mangled: str) -> list[str]:
-    """The names in ``_ZN6module8function...``."""
-    found, rest = [], mangled.removeprefix("_ZN")
-    while match := _NAME_PART.match(rest):
-        end = match.end() + int(match[0])
-        found.append(rest[match.end() : end])
-        rest = rest[end:]
-    return found
 
 
 def _emit(module: Any, maker: Any, machine: Machine) -> bytes:

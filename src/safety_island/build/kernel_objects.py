@@ -24,7 +24,14 @@ trunc
 ALLOWED = {f"{name}{kind}" for name in _MATHS.split() for kind in ("", "f")} | {"memcpy", "memset"}
 """What an object may leave undefined: the C maths library, memcpy and memset."""
 _HOST_ALLOWED = ALLOWED | {"memmove", "sincos"}
-_CODE_SOURCES = ("codegen.py", "c_interface.py", "elf.py", "machines.py", "support_*.py")
+_CODE_SOURCES = [
+    "codegen.py",
+    "c_interface.py",
+    "elf.py",
+    "kernel_names.py",
+    "machines.py",
+    "support_*.py",
+]
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,78 @@
+"""The start of a self-contained program: what it unpacks, when, and what it refuses."""
+
+from __future__ import annotations
+
+import subprocess
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from safety_island.build import pyz_start
+from safety_island.build.pyz import write_pyz
+from tests.build import pyz_process
+
+CONTENT = {"hello/__init__.py": b"def main():\n    print('hello')\n    return 3\n"}
+
+
+@pytest.fixture
+def hello(tmp_path: Path) -> Path:
+    """A small program."""
+    path = tmp_path / "hello.pyz"
+    write_pyz(path, CONTENT, "hello:main")
+    return path
+
+
+def test_the_same_content_gives_the_same_bytes(hello: Path, tmp_path: Path) -> None:
+    other = tmp_path / "other.pyz"
+    write_pyz(other, dict(reversed(CONTENT.items())), "hello:main")
+    assert other.read_bytes() == hello.read_bytes()
+    assert hello.stat().st_mode & 0o111
+
+
+def test_two_processes_may_unpack_at_the_same_time(hello: Path, tmp_path: Path) -> None:
+    commands = [pyz_process.command(hello)] * 4
+    environment = pyz_process.environment(tmp_path)
+    processes = [subprocess.Popen(command, env=environment) for command in commands]
+    assert [process.wait() for process in processes] == [3, 3, 3, 3]
+    assert len(list((tmp_path / "cache").iterdir())) == 1
+
+
+def test_a_folder_that_is_not_complete_is_replaced(hello: Path, tmp_path: Path) -> None:
+    assert pyz_process.run(hello, tmp_path).returncode == 3
+    (folder,) = (tmp_path / "cache").iterdir()
+    (folder / pyz_start.COMPLETE).unlink()
+    (folder / "hello" / "__init__.py").write_text("broken(")
+    result = pyz_process.run(hello, tmp_path)
+    assert (result.returncode, result.stdout) == (3, "hello\n")
+
+
+@pytest.mark.parametrize(
+    ("there", "here", "said"),
+    [
+        (b'python="3.', b'python="2.', "was built for Python 2."),
+        (b'machine="', b'machine="not-', "was built for not-"),
+    ],
+)
+def test_another_python_or_machine_is_told(
+    tmp_path: Path, there: bytes, here: bytes, said: str
+) -> None:
+    path = tmp_path / "hello.pyz"
+    write_pyz(path, CONTENT, "hello:main")
+    with zipfile.ZipFile(path) as archive:
+        members = {name: archive.read(name) for name in archive.namelist()}
+    members["__main__.py"] = members["__main__.py"].replace(there, here)
+    with zipfile.ZipFile(path, "w") as archive:
+        for name, data in members.items():
+            archive.writestr(name, data)
+    result = pyz_process.run(path, tmp_path)
+    assert result.returncode == 2
+    assert result.stderr.startswith("island: error: hello.pyz ") and said in result.stderr
+    assert len(result.stderr.splitlines()) == 1
+
+
+def test_a_place_that_cannot_be_written_is_told(hello: Path, tmp_path: Path) -> None:
+    (tmp_path / "cache").write_text("a file")
+    result = pyz_process.run(hello, tmp_path)
+    assert result.returncode == 2
+    assert "cannot be unpacked" in result.stderr.splitlines()[-1]
