@@ -40,7 +40,7 @@ def recorded(name: str) -> Recording:
     return load(DATA / f"{name}.npz")
 
 
-def parameters_of(run: Recording) -> Parameters:
+def parameters_of(run: Recording) -> params.IslandParameters:
     """Return the parameters that a run was recorded with."""
     return params.from_mapping(run.overrides, "firmware")
 

@@ -8,7 +8,10 @@ from pathlib import Path
 import pytest
 
 from safety_island.params import ParameterError, read
-from safety_island.params.sets import FILES, OWN
+from safety_island.params.sets import FILES, OWN, file_of_key
+
+OWN_KEYS = {key for key, file in file_of_key().items() if file in OWN}
+"""Keys of the island's own files, which neither Autoware nor the recordings know."""
 
 HEAD = "/**:\n  ros__parameters:\n"
 

@@ -68,6 +68,24 @@ BROKEN = [
         "3: stopping_state_stop_dist: found stopping_state_stop_dist 1.6 m; expected at most "
         "drive_state_stop_dist + drive_state_offset_stop_dist, 1.5 m",
     ),
+    (
+        "guard.jerk: [5.0, 6.0]",
+        "3: guard.jerk: found 5 entries in guard.speed_points and 2 in guard.jerk; expected as"
+        " many in both",
+    ),
+    (
+        "guard.speed_points: [0, 1, 1, 2, 3]",
+        "3: guard.speed_points: found [0.0, 1.0, 1.0, 2.0, 3.0]; expected each entry above",
+    ),
+    ("guard: {shortest_step: 0.5}", None),
+    (
+        "guard: {shortest_step: 0.6}",
+        "3: guard.shortest_step: found guard.shortest_step 0.6 above guard.longest_step 0.5",
+    ),
+    (
+        "guard: {longest_step: 0.1}",
+        "3: guard.longest_step: found ctrl_period 0.15 above guard.longest_step 0.1",
+    ),
 ]
 
 

@@ -36,15 +36,16 @@ class Line:
 
 def lines_of(text: str) -> Iterator[Line]:
     """Yield each line of a file that gives a value."""
-    prefix = ""
+    above: dict[int, str] = {}
     for number, line in enumerate(text.splitlines(), 1):
         match = _LINE.match(line)
-        if match and len(match[1]) >= 4:
+        if match and (depth := len(match[1])) >= 4:
+            above = {at: name for at, name in above.items() if at < depth}
             if not match[3].strip():
-                prefix = f"{match[2]}."
+                above[depth] = match[2]
                 continue
-            prefix = prefix if len(match[1]) > 4 else ""
-            yield Line(KNOWN[prefix + match[2]], number, match[1], match[2])
+            key = ".".join([*above.values(), match[2]])
+            yield Line(KNOWN[key], number, match[1], match[2])
 
 
 def changed(text: str, lines: dict[int, str | None]) -> str:
@@ -56,7 +57,7 @@ def changed(text: str, lines: dict[int, str | None]) -> str:
 def out_of_range(known: Known) -> list[str]:
     """Values just outside the range, and those that are in no range."""
     if known.kind == "str":
-        return ["no_such_choice", "''"]
+        return ["no_such_choice", "''"] if known.choices else []
     if known.kind == "bool":
         return []
     step = 1 if known.kind == "int" else 1e-6 * max(1.0, abs(known.low), abs(known.high))

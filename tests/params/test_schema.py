@@ -9,6 +9,10 @@ import pytest
 from safety_island.control.records import PARAMS, pack_parameters
 from safety_island.params import SETS, load_set
 from safety_island.params.schema import KNOWN, Known, assemble, values_of
+from tests.params.files import OWN_KEYS
+
+FREE_TEXTS = {"gate.map_frame", "gate.base_frame"}
+"""Names that the vehicle chooses."""
 
 ALL = pytest.mark.parametrize("known", KNOWN.values(), ids=list(KNOWN))
 
@@ -19,12 +23,23 @@ def test_every_parameter_has_a_meaning_and_a_range(known: Known) -> None:
     if known.kind in ("float", "int", "list"):
         assert math.isfinite(known.low) and math.isfinite(known.high) and known.low < known.high
     if known.kind == "str":
-        assert known.choices
+        assert bool(known.choices) != (known.key in FREE_TEXTS)
 
 
 @ALL
 def test_every_dimension_has_a_unit(known: Known) -> None:
-    plain = ("weight", "gain", "kd", "enable_", "use_", "extend_", "keep_", "correct_", "pass_")
+    plain = (
+        "weight",
+        "gain",
+        "kd",
+        "enable_",
+        "use_",
+        "extend_",
+        "keep_",
+        "correct_",
+        "pass_",
+        "_ratio",
+    )
     is_plain = known.kind in ("bool", "str") or any(word in known.key for word in plain)
     assert bool(known.unit) != is_plain
 
@@ -32,7 +47,16 @@ def test_every_dimension_has_a_unit(known: Known) -> None:
 def test_keys_are_autowares_with_dots() -> None:
     assert KNOWN["steering_offset.average_num"].name == "steering_offset_average_num"
     assert KNOWN["vehicle.cf"].name == "vehicle_cf"
-    assert all(known.name == key.replace(".", "_") for key, known in KNOWN.items())
+    theirs = {key: known for key, known in KNOWN.items() if key not in OWN_KEYS}
+    assert all(known.name == key.replace(".", "_") for key, known in theirs.items())
+
+
+def test_our_own_keys_begin_with_their_group() -> None:
+    """And hold the words of the field, in an order that reads well in a file."""
+    for key in OWN_KEYS:
+        group, _, rest = key.partition(".")
+        assert group == KNOWN[key].group
+        assert sorted(rest.replace(".", "_").split("_")) == sorted(KNOWN[key].name.split("_"))
 
 
 @pytest.mark.parametrize("name", SETS)

@@ -13,8 +13,8 @@ from safety_island.params import SETS, from_mapping, load_set, read, with_period
 from safety_island.params.no_effect import NO_EFFECT
 from safety_island.params.reasons import REASONS
 from safety_island.params.schema import KNOWN, values_of
-from safety_island.params.sets import FILES
-from tests.params.files import shipped_text
+from safety_island.params.sets import EXCEPTIONS, FILES, OWN
+from tests.params.files import OWN_KEYS, shipped_text
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "data"
 OURS = {"correct_reverse_signs", "symmetric_steer_rate_limits", "pass_filters_above_nyquist"}
@@ -32,7 +32,7 @@ def test_the_firmware_set_is_what_was_recorded() -> None:
         if key not in NO_EFFECT:
             assert values[key] == (tuple(value) if isinstance(value, list) else value), key
     undeclared = {key for key in KNOWN if key.startswith("vehicle.")}
-    assert set(values) - set(golden) == undeclared | OURS
+    assert set(values) - set(golden) == undeclared | OURS | OWN_KEYS
     assert all(values[key] == 0.0 for key in undeclared)
 
 
@@ -62,7 +62,7 @@ def test_the_autoware_set_is_the_recorded_variant_of_it() -> None:
     differing = {key for key in KNOWN if ours[key] != theirs[key]}
     assert differing == {key for key in KNOWN if key.startswith("vehicle.")} | (
         OURS & {"pass_filters_above_nyquist"}
-    )
+    ) | exceptions("firmware")
 
 
 def test_the_default_set() -> None:
@@ -79,11 +79,28 @@ def test_every_difference_between_the_sets_has_its_reason() -> None:
     assert set(REASONS) == {key for key in KNOWN if len({v[key] for v in values}) > 1}
 
 
+def exceptions(name: str) -> set[str]:
+    """Keys of the own files that a set changes."""
+    own = {f"island/{file}" for file in OWN}
+    origins = read([], name).origins
+    return {key for key in OWN_KEYS if origins[key].source not in own}
+
+
+def test_only_the_firmware_set_changes_what_is_our_own() -> None:
+    """Each change is one: a value that differs from that of the shared file, with a source."""
+    assert [bool(exceptions(name)) for name in SETS] == [True, False, False]
+    ours, theirs = values_of(load_set("default")), values_of(load_set("firmware"))
+    assert exceptions("firmware") == {key for key in OWN_KEYS if ours[key] != theirs[key]}
+    text = shipped_text("firmware", EXCEPTIONS)
+    assert text.startswith("# Set firmware: ") and "# Source: " in text.split("/**:")[0]
+
+
 @pytest.mark.parametrize("name", SETS)
 @pytest.mark.parametrize("file", FILES)
 def test_each_file_says_where_its_values_come_from(name: str, file: str) -> None:
     text = shipped_text(name, file)
-    assert text.startswith(f"# Set {name}: ")
+    whose = "under every parameter set" if file in OWN else f"Set {name}: "
+    assert text.startswith("# ") and whose in text.splitlines()[0]
     assert "# Source: " in text.split("/**:")[0]
 
 

@@ -42,7 +42,7 @@ class GateParams:
         "", "Frame of the vehicle's own motion; empty: any.", key="gate.base_frame"
     )
     min_trajectory_points: int = parameter(
-        "", "Fewest points of a trajectory.", 2, 100, key="gate.min_trajectory_points"
+        "points", "Fewest points of a trajectory.", 2, 100, key="gate.min_trajectory_points"
     )
     moving_speed: float = parameter(
         "m/s",
@@ -59,7 +59,7 @@ class GateParams:
         choices=("keep_first", "silent"),
     )
     writer_changes: int = parameter(
-        "",
+        "changes",
         "Changes of an input's publisher within 1 s at which the output ends.",
         2,
         1000,

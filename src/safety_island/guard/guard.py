@@ -80,7 +80,7 @@ class Guard:
         now, stamp, sequence, angle, rotation, velocity, acceleration = proposal
         total = now + stamp + angle + rotation + velocity + acceleration + speed + steering
         # What is not finite spreads to the sum; the sum of large numbers may be so by itself.
-        if not isfinite(total) and not _all_finite(*proposal, speed, steering):
+        if not isfinite(total) and not _all_finite(*proposal[:2], *proposal[3:], speed, steering):
             return _NOT_FINITE
         bits = 0
         if not -FUTURE_TOLERANCE_S <= now - stamp <= self._timeout:

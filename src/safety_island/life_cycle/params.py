@@ -34,7 +34,7 @@ class LifeCycleParams:
         key="life_cycle.stall_limit",
     )
     fault_ticks: int = parameter(
-        "",
+        "ticks",
         "Ticks in a row that fail, or whose command the guard refuses, at which the output ends.",
         1,
         1000,
@@ -49,14 +49,14 @@ class LifeCycleParams:
         key="life_cycle.mpc_failure_time",
     )
     overrun_ticks: int = parameter(
-        "",
+        "ticks",
         "Late ticks in a row that degrade; as many more end the output.",
         1,
         1000,
         key="life_cycle.overrun_ticks",
     )
     overrun_window: int = parameter(
-        "",
+        "ticks",
         "Ticks over which the mean period is taken.",
         2,
         1000,
@@ -70,7 +70,7 @@ class LifeCycleParams:
         key="life_cycle.overrun_ratio",
     )
     hold_ticks: int = parameter(
-        "",
+        "ticks",
         "CAN_ONLY: ticks for which the last command is repeated when the output must end.",
         0,
         100,
