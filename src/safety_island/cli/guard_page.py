@@ -47,8 +47,8 @@ outside. Where each value comes from stands in `params/sets/island/guard.param.y
 
 NOTES = """\
 
-The lateral acceleration of a command is speed² x tan(angle) / wheelbase, its lateral jerk the change
-of that with the angle, at one speed.
+The lateral acceleration of a command is speed² x tan(angle) / wheelbase, its lateral jerk the
+change of that with the angle, at one speed.
 
 ## How values are clamped
 
@@ -56,21 +56,22 @@ of that with the angle, at one speed.
   A value is moved into one after the other; when they have values in common, it ends at one of
   those, and the most restrictive decides.
 - **When they have none in common**, the later of these holds: distance from the measured angle,
-  lateral acceleration, lateral jerk, steering rate, largest angle. So one wrong measurement of speed
-  or steering does not make the wheel jump, and nothing leads beyond the largest angle. For the
-  acceleration: jerk, largest acceleration, largest speed.
-- **Braking stays braking.** Whatever the limits of jerk are, drive may be dropped at once: a command
-  of zero or below never comes out above zero. A brake that is released is released no faster than
-  `guard.jerk`, so a command to drive may still come out as braking. Above `guard.velocity`, measured,
-  nothing drives.
-- **The steering rate** goes with the angle: where the angle is clamped, the rate is scaled by what is
-  left of the tyre's way; it never grows and never turns round.
-- **No predecessor.** The first command, and the first after a silence, has none: what compares two
-  commands is left out. The number must rise all the same.
-- **Time.** The time between two commands counts as `guard.shortest_step` when they come closer, down
-  to half of it (a tick after a late one comes early), and below that as twice itself, so that many
-  commands at once gain nothing; it counts as `guard.longest_step` at most.
-- **Nobody follows.** While the vehicle is not engaged, the distance from the measured angle is let be.
+  lateral acceleration, lateral jerk, steering rate, largest angle. So one wrong measurement of
+  speed or steering does not make the wheel jump, and nothing leads beyond the largest angle. For
+  the acceleration: jerk, largest acceleration, largest speed.
+- **Braking stays braking.** Whatever the limits of jerk are, drive may be dropped at once: a
+  command of zero or below never comes out above zero. A brake that is released is released no
+  faster than `guard.jerk`, so a command to drive may still come out as braking. Above
+  `guard.velocity`, measured, nothing drives.
+- **The steering rate** goes with the angle: where the angle is clamped, the rate is scaled by
+  what is left of the tyre's way; it never grows and never turns round.
+- **No predecessor.** The first command, and the first after a silence, has none: what compares
+  two commands is left out. The number must rise all the same.
+- **Time.** The time between two commands counts as `guard.shortest_step` when they come closer,
+  down to half of it (a tick after a late one comes early), and below that as twice itself, so
+  that many commands at once gain nothing; it counts as `guard.longest_step` at most.
+- **Nobody follows.** While the vehicle is not engaged, the distance from the measured angle is
+  let be.
 """
 
 

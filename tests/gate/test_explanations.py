@@ -1,0 +1,28 @@
+"""Every reason of the gate says what it means and what to do."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+
+import pytest
+
+from safety_island.gate.params import GateParams
+from safety_island.gate.reason import EXPLANATIONS, SampleReason
+
+
+@pytest.mark.parametrize("reason", SampleReason)
+def test_every_reason_is_explained(reason: SampleReason) -> None:
+    meaning, action = EXPLANATIONS[reason]
+    assert len(meaning) > 10 and len(action) > 10
+    assert not meaning.endswith(".") and not action.endswith(".")
+
+
+def test_the_numbers_are_places_in_the_status_message() -> None:
+    assert [int(reason) for reason in SampleReason] == list(range(len(SampleReason)))
+
+
+@pytest.mark.parametrize("name", ["trajectory", "odometry", "steering", "acceleration"])
+def test_every_input_that_ages_has_its_limit(name: str) -> None:
+    (item,) = (item for item in fields(GateParams) if item.name == f"{name}_age_limit")
+    assert item.metadata["key"] == f"gate.age_limit.{name}"
+    assert item.metadata["unit"] == "s" and name in item.metadata["doc"]
