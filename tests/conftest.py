@@ -7,8 +7,12 @@ import random
 from collections.abc import Iterator
 
 import pytest
+from hypothesis import settings
 
 from safety_island.cli.domains import reserve
+
+settings.register_profile("island", deadline=None)  # machines are slow at times; that is no fault
+settings.load_profile("island")
 
 FIRST, LAST = 20, 229
 """Domain ids that tests take; a person's own programs use lower ones."""

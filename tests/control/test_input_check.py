@@ -89,7 +89,7 @@ def test_a_denormal_is_a_number(gate: TrajectoryFollower, field: str) -> None:
     smallest = 1e-45 if POINT[field] == np.float32 else 5e-324
     for value in (smallest, -smallest, -0.0):
         wanted = Refusal.BAD_QUATERNION if field == "qw" else Refusal.ACCEPTED
-        points = make_points(np.arange(40.0))
+        points = make_points(np.arange(-20.0, 20.0))
         points[field][20] = value
         assert gate.offer_trajectory(points, 1000.0) is wanted
 
@@ -132,6 +132,14 @@ def test_a_quaternion_has_a_norm_of_one_within_a_hundredth(
     assert offered(gate, 7, **turn) is wanted
     assert odometry(gate, qw=1.011) is Refusal.BAD_QUATERNION
     assert offered(gate, 0, qz=0.0, qw=1.011) is Refusal.BAD_QUATERNION
+
+
+@pytest.mark.parametrize(("norm", "held"), [(1.009, 1.0), (0.991, 1.0), (1.0 + 1e-10, 1.0 + 1e-10)])
+def test_a_norm_that_is_nearly_one_becomes_one(
+    gate: TrajectoryFollower, norm: float, held: float
+) -> None:
+    assert odometry(gate, qw=norm) is Refusal.ACCEPTED
+    assert gate.inputs["qw"][0] == pytest.approx(held, abs=1e-15)
 
 
 @pytest.mark.parametrize("value", NOT_FINITE)

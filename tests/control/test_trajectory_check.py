@@ -10,6 +10,7 @@ import pytest
 
 from safety_island.control.follower import TrajectoryFollower
 from safety_island.control.limits import MAX_POINTS, MAX_REFERENCE
+from safety_island.control.records import Records
 from safety_island.control.status import Refusal
 from tests.control.lateral_rig import line, make_points
 from tests.golden.harness import firmware
@@ -59,9 +60,42 @@ def test_consecutive_points_that_coincide(
     assert gate.offer_trajectory(points, 1000.0) is wanted
 
 
-def test_points_may_meet_again_later(gate: TrajectoryFollower) -> None:
-    there_and_back = make_points([0.0, 1.0, 0.0, 1.0])
-    assert gate.offer_trajectory(there_and_back, 1000.0) is Refusal.ACCEPTED
+def facing(points: Records, yaws: Any) -> Records:
+    """Let each point face a direction [rad]."""
+    points["qz"], points["qw"] = np.sin(0.5 * np.asarray(yaws)), np.cos(0.5 * np.asarray(yaws))
+    return points
+
+
+@pytest.mark.parametrize("turned", [0.0, math.pi])
+def test_points_may_meet_again_later(gate: TrajectoryFollower, turned: float) -> None:
+    """A loop that ends where it began, driven forward or in reverse."""
+    angles: Any = np.linspace(0.0, 2.0 * math.pi, 41)
+    loop = facing(make_points(5.0 * np.cos(angles), 5.0 * np.sin(angles)), angles + 1.65 + turned)
+    assert gate.offer_trajectory(loop, 1000.0) is Refusal.ACCEPTED
+
+
+@pytest.mark.parametrize(("back", "wanted"), [(0.5, "ACCEPTED"), (0.5000001, "MIXED_DIRECTION")])
+@pytest.mark.parametrize("yaw", [0.0, math.pi])
+def test_a_way_there_and_back_is_no_trajectory(
+    gate: TrajectoryFollower, back: float, wanted: str, yaw: float
+) -> None:
+    there_and_back = facing(make_points([0.0, 2.0, 2.0 - back, 4.0]), [yaw] * 4)
+    assert gate.offer_trajectory(there_and_back, 1000.0) is Refusal[wanted]
+
+
+def test_points_out_of_order(gate: TrajectoryFollower) -> None:
+    order = np.random.default_rng(7).permutation(40)
+    shuffled = make_points(np.arange(40.0)[order])
+    assert gate.offer_trajectory(shuffled, 1000.0) is Refusal.MIXED_DIRECTION
+
+
+def test_an_orientation_that_is_nearly_a_unit_becomes_one(gate: TrajectoryFollower) -> None:
+    points = make_points(np.arange(40.0))
+    points["qw"][20] = 1.009
+    points["qz"][21] = 1e-6  # its square counts for nothing: the bits stay
+    assert gate.offer_trajectory(points, 1000.0) is Refusal.ACCEPTED
+    assert gate.points["qw"][20] == pytest.approx(1.0, abs=1e-15)
+    assert gate.points["qw"][21] == 1.0 and gate.points["qz"][21] == 1e-6
 
 
 @pytest.mark.parametrize("step", [0.02, 0.1, 1.0])

@@ -19,6 +19,7 @@ from safety_island.control.input_check import (
     MAX_SQUARE_NORM,
     MAX_TURN,
     MIN_SQUARE_NORM,
+    UNIT_TOLERANCE,
     check_trajectory,
 )
 from safety_island.control.lateral import lateral_finish, lateral_prepare, lateral_step
@@ -150,6 +151,9 @@ class TrajectoryFollower:
         if not (MIN_SQUARE_NORM <= square <= MAX_SQUARE_NORM and math.isfinite(total)):
             finite = math.isfinite(total + qx + qy + qz + qw)
             return Refusal.BAD_QUATERNION if finite else Refusal.NOT_FINITE
+        if abs(square - 1.0) > UNIT_TOLERANCE:
+            scale = 1.0 / math.sqrt(square)
+            qx, qy, qz, qw = qx * scale, qy * scale, qz * scale, qw * scale
         self._pose[:] = (x, y, z, qx, qy, qz, qw, vx, vy, wz)
         self._missing.discard("odometry")
         return Refusal.ACCEPTED

@@ -22,6 +22,11 @@ MIN_SQUARE_NORM = 0.99**2
 MAX_SQUARE_NORM = 1.01**2
 """The norm of an orientation may be 1 % off."""
 
+MAX_BACKTRACK = 0.5
+"""Length [m] that a trajectory may lead against the direction of the rest of it."""
+UNIT_TOLERANCE = 1e-9
+"""Square of a norm further than this from 1 is brought back to it; nearer, the bits stay."""
+
 _ACCEPTED = int(Refusal.ACCEPTED)
 _NOT_FINITE = int(Refusal.NOT_FINITE)
 _TOO_FEW = int(Refusal.TOO_FEW_POINTS)
@@ -30,6 +35,7 @@ _COINCIDENT = int(Refusal.COINCIDENT_POINTS)
 _BAD_QUATERNION = int(Refusal.BAD_QUATERNION)
 _TOO_LONG = int(Refusal.TOO_LONG)
 _OUT_OF_RANGE = int(Refusal.OUT_OF_RANGE)
+_MIXED = int(Refusal.MIXED_DIRECTION)
 
 _LARGEST_PART = 2.0  # of a quaternion; the square of a larger one could overflow
 _FEWEST_POINTS = 2
@@ -38,8 +44,26 @@ _EXTENSION_POINTS = 256  # room for the points that the terminal extension appen
 
 
 @kernel
+def _normalise(point, square):
+    """Bring an orientation with this square of its norm to the norm 1."""
+    scale = 1.0 / math.sqrt(square)
+    point.qx *= scale
+    point.qy *= scale
+    point.qz *= scale
+    point.qw *= scale
+
+
+@kernel
+def _advance(point, dx, dy):
+    """How far a step [m] from a point leads in the direction that the point faces."""
+    cos_yaw = 1.0 - 2.0 * (point.qy * point.qy + point.qz * point.qz)
+    sin_yaw = 2.0 * (point.qw * point.qz + point.qx * point.qy)
+    return dx * cos_yaw + dy * sin_yaw
+
+
+@kernel
 def _check_point(point):
-    """Refusal of one trajectory point; the first reason found."""
+    """Refusal of one trajectory point, the first reason found; its orientation becomes a unit."""
     place = max(abs(point.x), abs(point.y), abs(point.z))
     speed = max(abs(point.v), abs(point.v_lat))
     turn = max(abs(point.heading_rate), abs(point.front_wheel), abs(point.rear_wheel))
@@ -55,6 +79,8 @@ def _check_point(point):
         square = point.qx * point.qx + point.qy * point.qy
         square += point.qz * point.qz + point.qw * point.qw
         if MIN_SQUARE_NORM <= square <= MAX_SQUARE_NORM:
+            if abs(square - 1.0) > UNIT_TOLERANCE:
+                _normalise(point, square)
             return _ACCEPTED
     parts = point.qx + point.qy + point.qz + point.qw
     return _BAD_QUATERNION if math.isfinite(parts) else _NOT_FINITE
@@ -73,23 +99,32 @@ def _length(points, n):
 
 @entry(PARAMS, POINT, int)
 def check_trajectory(params, points, n):
-    """Refusal of a received trajectory ``points[:n]``."""
+    """Refusal of a received trajectory ``points[:n]``; nearly unit orientations become units.
+
+    A trajectory leads forward or backward, not both: points in another order than that of driving
+    would lead to and fro.
+    """
     if n < _FEWEST_POINTS:
         return _TOO_FEW
     if n > MAX_POINTS:
         return _TOO_MANY
     bound = 0.0  # at least the length of the path
+    forward = 0.0
+    backward = 0.0
     for i in range(n):
         reason = _check_point(points[i])
         if reason != _ACCEPTED:
             return reason
         if i > 0:
-            dx = abs(points[i].x - points[i - 1].x)
-            dy = abs(points[i].y - points[i - 1].y)
-            if dx < _SAME_PLACE and dy < _SAME_PLACE:
+            dx = points[i].x - points[i - 1].x
+            dy = points[i].y - points[i - 1].y
+            if abs(dx) < _SAME_PLACE and abs(dy) < _SAME_PLACE:
                 return _COINCIDENT
-            bound += dx + dy
+            bound += abs(dx) + abs(dy)
+            way = _advance(points[i - 1], dx, dy)
+            forward += max(way, 0.0)
+            backward += max(-way, 0.0)
     room = (MAX_REFERENCE - _EXTENSION_POINTS) * params[0].traj_resample_dist
     if bound > room and _length(points, n) > room:
         return _TOO_LONG
-    return _ACCEPTED
+    return _MIXED if min(forward, backward) > MAX_BACKTRACK else _ACCEPTED

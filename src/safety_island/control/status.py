@@ -74,6 +74,7 @@ class Refusal(IntEnum):
     BAD_QUATERNION = 5
     TOO_LONG = 6
     OUT_OF_RANGE = 7
+    MIXED_DIRECTION = 8
 
 
 class MpcStatus(IntEnum):

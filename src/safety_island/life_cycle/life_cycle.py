@@ -31,6 +31,7 @@ class Facts(NamedTuple):
     """Why the command must not go out."""
 
 
+_QUIET = (Reason.NONE, Reason.NONE)
 _ARMED = frozenset({State.ACTIVE, State.HOLD, State.STOP})
 _CONTROLS = frozenset({State.INIT, State.READY, State.ACTIVE, State.HOLD})
 
@@ -91,6 +92,8 @@ class LifeCycle:
 
     def judge(self, facts: Facts, now: float) -> Life:
         """Take the facts of a tick; return the state that decides what it sends."""
+        if self.life.state is State.ACTIVE and facts[:2] == _QUIET and self._is_calm(facts):
+            return self.life  # the usual case, in which nothing can change
         if facts.disengaged is Reason.NOT_AUTONOMOUS:
             self._barred = Reason.NONE
         self._faults.note(facts.failed, now)
@@ -112,6 +115,12 @@ class LifeCycle:
         )
         self._enter(before, facts.speed)
         return self.life
+
+    def _is_calm(self, facts: Facts) -> bool:
+        """Whether nothing went wrong in this tick, and nothing is still counted from before."""
+        wrong = facts.failed or facts.unsolved or facts.refused or self.overrun.over
+        counts = (self._faults, self._unsolved, self._refusals, self._outputs, self._crashes)
+        return not wrong and not any([streak.count for streak in counts])
 
     def fault(self) -> None:
         """Note a tick that ended with an exception and sent nothing; too many end the output."""

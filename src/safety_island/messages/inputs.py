@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 from safety_island.messages import wire
 from safety_island.messages.codec import to_little_endian
+from safety_island.messages.strings import LeadingStrings
 from safety_island.messages.wire import HEADER_LE, Time
 
 ODOMETRY = "nav_msgs/msg/Odometry"
@@ -21,8 +22,10 @@ OPERATION_MODE = "autoware_adapi_v1_msgs/msg/OperationModeState"
 
 _COVARIANCE = 36 * 8
 _TIME = Struct("<iI")
-_POSE = Struct("<7d")
+_POSE_AND_TWIST = Struct(f"<7d{_COVARIANCE}x6d")
 _TWIST = Struct("<6d")
+_ODOMETRY_FRAMES = LeadingStrings(ODOMETRY, 2)
+_ACCELERATION_FRAME = LeadingStrings(ACCELERATION, 1)
 _STEERING = Struct("<4siIf")
 _MODE = Struct("<4siI7B")
 _ZEROS = (0.0,) * 36
@@ -102,18 +105,10 @@ def decode_odometry(data: bytes) -> Odometry:
     """Return the odometry of a nav_msgs/msg/Odometry; covariances are stepped over."""
     data = little_endian(data, ODOMETRY)
     stamp = decode_stamp(data, ODOMETRY)
-    frame_id, end = wire.read_string(data, wire.HEADER_SIZE + 8, ODOMETRY)
-    child_frame_id, end = wire.read_string(data, end, ODOMETRY)
-    pose = wire.aligned(end, 8)
-    twist = pose + _POSE.size + _COVARIANCE
-    wire.check_end(data, twist + _TWIST.size + _COVARIANCE, ODOMETRY)
-    return Odometry(
-        stamp,
-        frame_id,
-        child_frame_id,
-        *_POSE.unpack_from(data, pose),
-        *_TWIST.unpack_from(data, twist),
-    )
+    pose = wire.aligned(_ODOMETRY_FRAMES.read(data), 8)
+    wire.check_end(data, pose + _POSE_AND_TWIST.size + _COVARIANCE, ODOMETRY)
+    frame_id, child_frame_id = _ODOMETRY_FRAMES.texts
+    return Odometry(stamp, frame_id, child_frame_id, *_POSE_AND_TWIST.unpack_from(data, pose))
 
 
 def encode_odometry(
@@ -132,9 +127,9 @@ def decode_acceleration(data: bytes) -> Acceleration:
     """Return the acceleration of a geometry_msgs/msg/AccelWithCovarianceStamped."""
     data = little_endian(data, ACCELERATION)
     stamp = decode_stamp(data, ACCELERATION)
-    frame_id, end = wire.read_string(data, wire.HEADER_SIZE + 8, ACCELERATION)
-    start = wire.aligned(end, 8)
+    start = wire.aligned(_ACCELERATION_FRAME.read(data), 8)
     wire.check_end(data, start + _TWIST.size + _COVARIANCE, ACCELERATION)
+    (frame_id,) = _ACCELERATION_FRAME.texts
     return Acceleration(stamp, frame_id, *_TWIST.unpack_from(data, start))
 
 

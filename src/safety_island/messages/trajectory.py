@@ -11,10 +11,13 @@ from safety_island.messages import wire
 from safety_island.messages.errors import DecodeError, DecodeReason
 from safety_island.messages.inputs import decode_stamp, little_endian, string_prefix
 from safety_island.messages.points import POINT, POINT_HEAD, TIME_SIZE, Points
+from safety_island.messages.strings import LeadingStrings
 from safety_island.messages.wire import HEADER_LE, Time
 
 TRAJECTORY = "autoware_planning_msgs/msg/Trajectory"
 _U32 = Struct("<I")
+_FRAME = LeadingStrings(TRAJECTORY, 1)
+_NO_TIME = bytes(TIME_SIZE)
 _TIME = Struct("<iI")
 
 
@@ -55,9 +58,9 @@ def decode_trajectory(data: bytes, out: Points | None = None) -> Trajectory:
     points = out[: found.size]
     if found.size:
         size = found.size * POINT.itemsize - TIME_SIZE
-        memory = points.view(np.uint8)
-        memory[:size] = np.frombuffer(data, np.uint8, size, found.start)
-        memory[size:] = 0
+        memory = points.data.cast("B")
+        memory[:size] = data[found.start : found.start + size]
+        memory[size:] = _NO_TIME
     return Trajectory(found.stamp, found.frame_id, points, found.first_time)
 
 
@@ -98,8 +101,8 @@ def encode_trajectory(
 
 def _layout(data: bytes) -> _Layout:
     stamp = decode_stamp(data, TRAJECTORY)
-    frame_id, end = wire.read_string(data, wire.HEADER_SIZE + 8, TRAJECTORY)
-    count_at = wire.aligned(end, 4)
+    count_at = wire.aligned(_FRAME.read(data), 4)
+    (frame_id,) = _FRAME.texts
     try:
         (count,) = _U32.unpack_from(data, count_at)
         if count == 0:
