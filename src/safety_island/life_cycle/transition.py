@@ -41,22 +41,25 @@ _WELL = Life(State.ACTIVE, Reason.NONE)
 def next_life(life: Life, now: Conditions) -> Life:
     """Return the next state; every pair is in ``tests/life_cycle/test_transition.py``."""
     state, _, cause = life
-    if state is State.ACTIVE and not now.disengaged:
-        return _fall(now) if now.blocked else _WELL
-    if state in (State.HOLD, State.STOP) and not now.disengaged:
-        return _stop(state, cause, now)
     if state is State.SILENT:
         return _silent(cause, now)
-    return _unarmed(state, now)
+    if state is State.ACTIVE and not now.blocked and not now.disengaged:
+        return _WELL
+    if now.disengaged is not Reason.NOT_AUTONOMOUS:  # a mode that is unknown lets nobody off
+        if state is State.ACTIVE and now.blocked:
+            return _fall(now)
+        if state in (State.HOLD, State.STOP):
+            return _stop(state, cause, now)
+    return _unarmed(now)
 
 
-def _unarmed(state: State, now: Conditions) -> Life:
+def _unarmed(now: Conditions) -> Life:
     """From INIT and READY, and from any state that an operator leaves by disengaging."""
     if now.blocked:
         return Life(State.INIT, now.blocked)
     if now.disengaged:
         return Life(State.READY, now.disengaged)
-    if state is State.INIT and now.barred and not now.arm:
+    if now.barred and not now.arm:
         return Life(State.SILENT, now.barred, now.barred)
     return _WELL
 
@@ -72,7 +75,8 @@ def _fall(now: Conditions) -> Life:
 def _stop(state: State, cause: Reason, now: Conditions) -> Life:
     """From HOLD back when the cause has gone; a stop that has begun is carried through."""
     if state is State.HOLD and not now.blocked:
-        return _WELL
+        back = State.READY if now.disengaged else State.ACTIVE
+        return Life(back, now.disengaged)
     if state is State.STOP and now.ramp_over:
         return Life(State.SILENT, now.blocked or Reason.LATCHED, cause)
     is_stop = state is State.STOP or now.hold_over
@@ -83,8 +87,10 @@ def _silent(cause: Reason, now: Conditions) -> Life:
     """Latched: out of it only by an explicit act, and never while a cause stands."""
     if now.blocked:
         return Life(State.SILENT, now.blocked, cause)
-    if now.disengaged:
+    if now.disengaged is Reason.NOT_AUTONOMOUS:
         return Life(State.READY, now.disengaged)
+    if now.disengaged:  # nobody has left autonomous mode: its publisher went
+        return Life(State.SILENT, now.disengaged, cause)
     if now.arm:
         return _WELL
     return Life(State.SILENT, Reason.LATCHED if cause is not now.barred else cause, cause)
