@@ -13,12 +13,12 @@ class IslandWatch:
     def __init__(self, joined_at: float, discovery_s: float) -> None:
         self.others: frozenset[bytes] = frozenset()
         self._ready_at = joined_at + discovery_s
-        self._earlier: frozenset[bytes] = frozenset()
+        self._earlier: frozenset[bytes] | None = None
 
     def update(self, others: frozenset[bytes], now: float) -> None:
         """Note which other publishers live now (GUIDs)."""
         self.others = others
-        if now <= self._ready_at:
+        if now <= self._ready_at or self._earlier is None:  # a first look may come late
             self._earlier = others
         else:
             self._earlier &= others
