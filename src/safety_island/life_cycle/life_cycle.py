@@ -84,7 +84,8 @@ class LifeCycle:
         return False
 
     def _restart(self) -> None:
-        self.life = Life(State.INIT, Reason.STALLED)
+        if self.life.state is not State.SILENT:  # what is latched stays so
+            self.life = Life(State.INIT, Reason.STALLED)
         self._barred = Reason.STALLED
         self.overrun.forget()
         for streak in (self._faults, self._refusals, self._outputs, self._unsolved):
@@ -113,6 +114,8 @@ class LifeCycle:
                 ramp_over=self._ramp is not None and self._ramp.is_over,
             ),
         )
+        if self.life.state is State.ACTIVE:
+            self._barred = Reason.NONE
         self._enter(before, facts.speed)
         return self.life
 
@@ -149,7 +152,7 @@ class LifeCycle:
             self._ramp = StopRamp(self._params, self._last_sent, speed)
         elif state not in (State.HOLD, State.STOP):
             self._holds, self._ramp = 0, None
-        if state is State.SILENT:
+        if state in (State.INIT, State.SILENT):
             self._outputs.note(False, 0.0)  # what is not tried cannot fail
 
     def motion(self) -> Motion | None:

@@ -1,0 +1,117 @@
+"""A process that stood still, a machine that slept, ticks that end with an exception."""
+
+from __future__ import annotations
+
+import pytest
+
+from safety_island.life_cycle.reason import Reason
+from safety_island.life_cycle.state import State
+from safety_island.life_cycle.transition import Life
+from tests.life_cycle.rig import MANUAL, STALE, WELL, Island, silent
+
+STALLED = Life(State.INIT, Reason.STALLED)
+CRASHED = Reason.CONTROLLER_FAULT
+
+
+class TestStall:
+    @pytest.mark.parametrize(("gap_s", "stalls"), [(0.625, False), (0.6251, True)])
+    def test_the_gap_between_two_ticks(self, gap_s: float, stalls: bool) -> None:
+        island = Island().engage()
+        assert island.begin(gap_s) is stalls
+        assert island.life == (STALLED if stalls else WELL)
+
+    @pytest.mark.parametrize(("slept_s", "stalls"), [(0.5, False), (0.5001, True)])
+    def test_a_machine_that_slept(self, slept_s: float, stalls: bool) -> None:
+        island = Island().engage()
+        island.slept_s = slept_s
+        assert island.begin() is stalls
+        assert not island.begin()  # the same sleep counts once
+
+    def test_sleep_before_the_first_tick_is_of_no_account(self) -> None:
+        island = Island()
+        island.slept_s = 1e6
+        assert not island.begin()
+        assert not island.begin()
+
+    def test_a_clock_of_sleep_that_goes_back_hides_no_gap(self) -> None:
+        island = Island().engage()
+        island.slept_s = -5.0
+        assert island.begin(0.75)
+
+    def test_a_moving_vehicle_is_not_driven_on(self) -> None:
+        island = Island().engage()
+        island.begin(1.0)
+        assert island.tick(STALE) == Life(State.INIT, STALE)
+        assert island.tick() == silent(Reason.STALLED)
+        assert island.tick() == silent(Reason.STALLED)
+        assert island.tick(disengaged=MANUAL).state is State.READY
+        assert island.tick() == WELL
+
+    def test_what_was_latched_stays_so_even_at_standstill(self) -> None:
+        island = Island().engage()
+        island.tick(Reason.OVERRUN)
+        assert island.begin(1.0)
+        assert island.tick(speed=0.0) == silent(Reason.LATCHED, Reason.OVERRUN)
+
+    @pytest.mark.parametrize("fact", ["failed", "refused", "unsolved", "sent"])
+    def test_what_went_wrong_before_is_forgotten(self, fact: str) -> None:
+        island = Island().engage()
+        island.went_out = fact != "sent"
+        refused = Reason.COMMAND_STALE if fact == "refused" else Reason.NONE
+        facts = {"failed": fact == "failed", "unsolved": fact == "unsolved"}
+        for _ in range(2 + (fact == "sent")):
+            assert island.tick(refused=refused, **facts) == WELL
+        island.begin(2.0)
+        island.went_out = True
+        assert island.tick(speed=0.0, refused=refused, **facts) == WELL
+
+    def test_late_ticks_before_it_are_forgotten(self) -> None:
+        island = Island().engage()
+        for _ in range(5):
+            island.tick(skipped=1)
+        island.begin(2.0)
+        assert island.tick(speed=0.0, skipped=1) == WELL
+
+
+class TestCrash:
+    def crash(self, island: Island) -> Life:
+        island.begin()
+        island.life_cycle.fault()
+        return island.life
+
+    def test_three_ticks_in_a_row_that_end_with_an_exception(self) -> None:
+        island = Island().engage()
+        assert [self.crash(island) for _ in range(2)] == [WELL] * 2
+        assert self.crash(island) == silent(CRASHED)
+        assert self.crash(island) == silent(CRASHED)
+        assert island.tick() == silent(Reason.LATCHED, CRASHED)
+
+    def test_one_tick_that_does_not_forgives(self) -> None:
+        island = Island().engage()
+        for _ in range(3):
+            self.crash(island)
+            self.crash(island)
+            assert island.tick() == WELL
+
+    def test_a_silence_keeps_its_cause(self) -> None:
+        island = Island().engage()
+        island.tick(STALE)
+        for _ in range(4):
+            assert self.crash(island) == silent(STALE)
+
+    def test_before_it_is_armed_nothing_is_latched(self) -> None:
+        island = Island()
+        island.tick(disengaged=MANUAL)
+        for _ in range(3):
+            life = self.crash(island)
+        assert life == Life(State.INIT, CRASHED)
+        assert island.tick(disengaged=MANUAL) == Life(State.READY, MANUAL)
+
+    @pytest.mark.parametrize("ticks", [1, 4])
+    def test_while_held_or_stopping_it_ends_in_silence(self, ticks: int) -> None:
+        island = Island(has_ramp=True, fault_ticks=1).engage()
+        for _ in range(ticks):
+            island.tick(STALE)
+            island.life_cycle.motion()
+        assert island.life.state is (State.HOLD if ticks == 1 else State.STOP)
+        assert self.crash(island) == silent(CRASHED)
