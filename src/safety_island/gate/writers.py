@@ -39,7 +39,7 @@ class Writers:
         """Whether a sample of this publisher is taken; the first one becomes the owner."""
         if guid == self.owner or guid == UNKNOWN:
             return True
-        if self.owner:
+        if self.owner in self.alive:
             return False
         self.owner = guid
         return True
