@@ -45,6 +45,7 @@ class StampGate:
         self._held_at = -math.inf
         self._older_ns = -1
         self._older_since = math.inf
+        self._older_at = -math.inf
 
     def judge(self, stamp: Time, data: bytes, now: float) -> SampleReason | None:
         """Say why a sample is refused, None when its stamp is good."""
@@ -67,9 +68,10 @@ class StampGate:
         return SampleReason.DELAYED if self._new_delay_s > self.limit_s else None
 
     def _judge_older(self, stamp_ns: int, now: float) -> SampleReason | None:
-        if stamp_ns <= self._older_ns or self._older_ns < 0:
-            self._older_since = now
-        self._older_ns = stamp_ns
+        if now > self._older_at:  # of one tick the newest comes first, and it alone tells
+            if stamp_ns <= self._older_ns or self._older_ns < 0:
+                self._older_since = now
+            self._older_ns, self._older_at = stamp_ns, now
         if now - self._older_since < self.limit_s * STEP_BACK_SHARE:
             return SampleReason.OLDER
         self.steps_back += 1

@@ -1,0 +1,176 @@
+"""Stamps one by one, each limit at its boundary. 1 tick = 1/8 s, the age limit 1/2 s."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from safety_island.gate.reason import SampleReason
+from safety_island.gate.stamps import BEGIN_ANEW_S, FORGET_RATE, STEP_BACK_SHARE, StampGate
+from safety_island.messages.wire import Time
+
+OLDER, DELAYED = SampleReason.OLDER, SampleReason.DELAYED
+
+
+def stamp(seconds: float) -> Time:
+    return Time.from_seconds(seconds)
+
+
+def offer(
+    gate: StampGate, seconds: float, now: float, data: bytes | None = None
+) -> SampleReason | None:
+    """Judge a sample, and hold it when it is good."""
+    data = repr((seconds, now)).encode() if data is None else data
+    reason = gate.judge(stamp(seconds), data, now)
+    if reason is None:
+        gate.hold(data, now)
+    return reason
+
+
+@pytest.fixture
+def gate() -> StampGate:
+    """Holds a sample of stamp 100 s that came at 1000 s."""
+    gate = StampGate(0.5)
+    assert offer(gate, 100.0, 1000.0, b"said before.held") is None
+    return gate
+
+
+def test_the_numbers() -> None:
+    assert (BEGIN_ANEW_S, FORGET_RATE, STEP_BACK_SHARE) == (10.0, 0.001, 0.5)
+    assert StampGate().limit_s == math.inf
+    assert (StampGate(0.5).steps_back, StampGate(0.5).delay_s, StampGate(0.5).stamp_ns) == (0, 0, 0)
+
+
+@pytest.mark.parametrize(
+    "bad", [Time(0, 0), Time(-1, 0), Time(-1, 5), Time(1, 10**9), Time(0, 2**32 - 1)]
+)
+def test_what_is_no_time(bad: Time) -> None:
+    assert StampGate(0.5).judge(bad, b"", 0.0) is SampleReason.BAD_STAMP
+
+
+@pytest.mark.parametrize("good", [Time(0, 1), Time(1, 0), Time(1, 10**9 - 1), Time(2**31 - 1, 0)])
+def test_the_ends_of_what_is_a_time(good: Time) -> None:
+    gate = StampGate(0.5)
+    assert gate.judge(good, b"", 0.0) is None
+    assert gate.stamp_ns == good.nanoseconds
+
+
+def test_the_same_bytes_again(gate: StampGate) -> None:
+    assert offer(gate, 100.0, 1000.125, b"said before.held") is SampleReason.DUPLICATE
+    assert offer(gate, 100.0, 1000.125, b"other") is SampleReason.STAMP_STANDS_STILL
+
+
+def test_a_stamp_that_stands_still_never_refreshes(gate: StampGate) -> None:
+    for seconds in (0.125, 9.0, 11.0, 1e6):
+        assert offer(gate, 100.0, 1000.0 + seconds) is SampleReason.STAMP_STANDS_STILL
+
+
+def test_what_it_says_after_its_stamp(gate: StampGate) -> None:
+    assert gate.repeats(b"other header" + b"held")
+    assert not gate.repeats(b"said before.help")
+    assert not gate.repeats(b"said before.held!")
+
+
+class TestDelay:
+    @pytest.mark.parametrize(("late_s", "reason"), [(0.499, None), (0.502, DELAYED)])
+    def test_one_sample_that_took_longer(
+        self, gate: StampGate, late_s: float, reason: SampleReason | None
+    ) -> None:
+        assert offer(gate, 100.125, 1000.125 + late_s) is reason
+
+    def test_the_limit_itself_is_not_beyond(self) -> None:
+        gate = StampGate(0.5 * (1.0 - FORGET_RATE) - 0.125)
+        offer(gate, 100.0, 1000.0)
+        assert offer(gate, 100.125, 1000.5) is None
+        assert gate.delay_s == 0.5 * (1.0 - FORGET_RATE) - 0.125
+
+    def test_delay_adds_up_over_samples(self, gate: StampGate) -> None:
+        found = [offer(gate, 100.0 + 0.0625 * i, 1000.0 + 0.125 * i) for i in range(1, 10)]
+        assert found == [None] * 8 + [DELAYED]
+        assert gate.delay_s == pytest.approx(8 * (0.0625 - 0.000125))
+
+    def test_what_is_refused_adds_nothing(self, gate: StampGate) -> None:
+        for _ in range(5):
+            assert offer(gate, 100.125, 1002.0) is DELAYED
+        assert gate.delay_s == 0.0
+        assert offer(gate, 102.0, 1002.125) is None
+        assert gate.delay_s == pytest.approx(0.125 - 0.002125)
+
+    def test_a_quicker_sample_takes_it_back_and_no_further(self, gate: StampGate) -> None:
+        offer(gate, 100.125, 1000.375)
+        assert gate.delay_s == pytest.approx(0.25 - 0.000375)
+        offer(gate, 100.5, 1000.5)
+        assert gate.delay_s == 0.0
+        offer(gate, 100.625, 1000.875)
+        assert gate.delay_s == pytest.approx(0.25 - 0.000375)
+
+
+class TestOlder:
+    def test_a_sample_that_was_overtaken(self, gate: StampGate) -> None:
+        assert offer(gate, 99.9, 1000.125) is OLDER
+        assert offer(gate, 100.125, 1000.125) is None
+
+    def test_a_clock_that_was_set_back_shows_after_half_the_limit(self, gate: StampGate) -> None:
+        found = [offer(gate, 50.0 + 0.125 * i, 1000.125 + 0.125 * i) for i in range(3)]
+        assert found == [OLDER, OLDER, None]
+        assert gate.steps_back == 1
+        assert offer(gate, 50.375, 1000.5) is None
+        assert gate.steps_back == 1
+
+    def test_just_before_it_does_not(self, gate: StampGate) -> None:
+        assert offer(gate, 50.0, 1000.125) is OLDER
+        assert offer(gate, 50.25, 1000.3749) is OLDER
+        assert gate.steps_back == 0
+
+    @pytest.mark.parametrize("second", [50.0, 49.0])
+    def test_older_stamps_that_do_not_advance_begin_the_search_anew(
+        self, gate: StampGate, second: float
+    ) -> None:
+        assert offer(gate, 50.0, 1000.125) is OLDER
+        assert offer(gate, second, 1000.375) is OLDER
+        assert offer(gate, 50.5, 1000.5) is OLDER
+        assert offer(gate, 50.625, 1000.625) is None
+
+    def test_a_good_sample_ends_the_search(self, gate: StampGate) -> None:
+        assert offer(gate, 50.0, 1000.125) is OLDER
+        assert offer(gate, 100.25, 1000.25) is None
+        assert offer(gate, 50.25, 1000.375) is OLDER
+        assert offer(gate, 50.5, 1000.5) is OLDER
+
+    def test_several_samples_in_one_tick(self, gate: StampGate) -> None:
+        for tick in range(3):
+            now = 1000.125 + 0.125 * tick
+            newest = offer(gate, 50.0 + 0.125 * tick, now)
+            assert newest is (OLDER if tick < 2 else None)
+            if newest is OLDER:  # the tick looks at those before it, too
+                assert offer(gate, 49.95 + 0.125 * tick, now) is OLDER
+        assert gate.steps_back == 1
+
+    def test_without_an_age_limit_only_a_pause_lets_older_ones_in(self) -> None:
+        gate = StampGate()
+        offer(gate, 100.0, 1000.0)
+        assert [offer(gate, 50.0 + i, 1001.0 + i) for i in range(9)] == [OLDER] * 9
+        assert offer(gate, 60.0, 1010.0) is OLDER
+        assert offer(gate, 60.5, 1010.001) is None
+        assert gate.steps_back == 0
+
+
+class TestBeginAnew:
+    def test_after_a_pause_any_stamp_is_taken(self, gate: StampGate) -> None:
+        offer(gate, 100.125, 1000.375)
+        assert offer(gate, 50.0, 1010.375) is OLDER
+        assert offer(gate, 50.125, 1010.376) is None
+        assert gate.delay_s == 0.0
+
+    def test_a_delay_as_well(self, gate: StampGate) -> None:
+        assert offer(gate, 100.125, 1010.0) is DELAYED
+        assert offer(gate, 100.125, 1010.001) is None
+
+    def test_to_forget_is_to_hold_nothing(self, gate: StampGate) -> None:
+        offer(gate, 100.125, 1000.375)
+        offer(gate, 50.0, 1000.5)
+        gate.forget()
+        assert gate.delay_s == 0.0 and not gate.repeats(b"said before.held")
+        assert offer(gate, 100.125, 1000.5) is None
+        assert offer(gate, 50.0, 1000.75) is OLDER
