@@ -58,12 +58,16 @@ class TestStall:
         island = Island().engage()
         island.went_out = fact != "sent"
         refused = Reason.COMMAND_STALE if fact == "refused" else Reason.NONE
-        facts = {"failed": fact == "failed", "unsolved": fact == "unsolved"}
+
+        def tick(speed: float) -> Life:
+            failed, unsolved = fact == "failed", fact == "unsolved"
+            return island.tick(speed=speed, refused=refused, failed=failed, unsolved=unsolved)
+
         for _ in range(2 + (fact == "sent")):
-            assert island.tick(refused=refused, **facts) == WELL
+            assert tick(2.0) == WELL
         island.begin(2.0)
         island.went_out = True
-        assert island.tick(speed=0.0, refused=refused, **facts) == WELL
+        assert tick(0.0) == WELL
 
     def test_late_ticks_before_it_are_forgotten(self) -> None:
         island = Island().engage()
