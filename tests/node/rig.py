@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from safety_island.can.mode import OutputMode
 from safety_island.control.records import COMMAND, POINT, TRACE, Records, new_points
 from safety_island.control.status import Mode, MpcStatus, Refusal
 from safety_island.dds import topics
@@ -117,6 +118,7 @@ class Rig:
         follower: Follower,
         outputs: Sequence[Output] | None = None,
         log: LogConfig | None = None,
+        mode: OutputMode = OutputMode.DDS_ONLY,
         **overrides: object,
     ) -> None:
         self.platform = make(log)
@@ -124,7 +126,12 @@ class Rig:
         self.domain = MemoryDomain(self.clock)
         self.commands = self.listen(topics.CONTROL)
         self.node = ControllerNode(
-            self.platform, self.domain, follower, from_mapping(overrides), outputs
+            self.platform,
+            self.domain,
+            follower,
+            from_mapping(overrides),
+            outputs,
+            mode=mode,
         )
         self._publishers = {
             entry: self.domain.publisher(entry.name, entry.type_name, entry.qos)

@@ -1,0 +1,152 @@
+"""The life cycle in the node: what goes out in each state, and what the log says of it."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+from safety_island.can.mode import OutputMode
+from safety_island.control.status import Mode
+from safety_island.life_cycle.reason import Reason
+from safety_island.life_cycle.state import State
+from safety_island.messages.outputs import Control
+from safety_island.node.report import Outcome, TickReport
+from tests.node.rig import ROWS, FakeFollower, Rig
+from tests.node.test_controller_output import RecordingOutput
+
+T = 0.15
+
+
+def tick(rig: Rig, stale: bool = False, engaged: bool = True, vx: float = 1.0) -> TickReport:
+    """Send everything but, when stale, the odometry; then tick."""
+    if not stale:
+        rig.odometry(vx, x=rig.stamp.seconds - 1000.0)
+    rig.steering()
+    rig.acceleration()
+    rig.mode(Mode.AUTONOMOUS if engaged else Mode.LOCAL, True)
+    rig.trajectory(ROWS)
+    return rig.tick(T)
+
+
+def states(rig: Rig) -> list[str]:
+    """What the log says of states."""
+    return [line.split("] state ")[1].strip() for line in rig.lines if "] state " in line]
+
+
+def can_only(follower: FakeFollower) -> tuple[Rig, RecordingOutput]:
+    """A node whose vehicle hears CAN alone, engaged at 1 m/s."""
+    follower.command["acceleration"] = 0.0
+    follower.command["steering_tire_angle"] = 0.0625
+    follower.command["velocity"] = 1.0
+    can = RecordingOutput("can")
+    rig = Rig(follower, [can], mode=OutputMode.CAN_ONLY)
+    tick(rig, engaged=False)
+    assert tick(rig).life.state is State.ACTIVE
+    return rig, can
+
+
+def motion(command: Control) -> tuple[float, float, float]:
+    return (
+        command.steering_tire_angle,
+        round(command.velocity, 6),
+        round(command.acceleration, 6),
+    )
+
+
+class TestCanOnly:
+    def test_hold_then_stop_then_silence(self, follower: FakeFollower) -> None:
+        rig, can = can_only(follower)
+        reports = [tick(rig, stale=True) for _ in range(2)]
+        assert all(report.published for report in reports)  # its age is 0.45 s
+        sent = len(can.sent)
+        reports = [tick(rig, stale=True) for _ in range(32)]
+        names = [report.life.state.name for report in reports]
+        count = names.count("STOP")
+        assert names == ["HOLD"] * 2 + ["STOP"] * count + ["SILENT"] * (30 - count)
+        assert {report.outcome for report in reports[: 2 + count]} == {Outcome.SUBSTITUTED}
+        assert {report.outcome for report in reports[2 + count :]} == {Outcome.FORBIDDEN}
+        assert len(can.sent) == sent + 2 + count
+        assert all(report.life.cause is Reason.INPUT_STALE for report in reports)
+
+    def test_the_commands_of_hold_and_of_the_ramp(self, follower: FakeFollower) -> None:
+        rig, can = can_only(follower)
+        for _ in range(2):
+            tick(rig, stale=True)
+        del can.sent[:]
+        for _ in range(6):
+            tick(rig, stale=True)
+        # 2.5 m/s^3: 0.375 m/s^2 more at every tick of 0.15 s.
+        assert [motion(command) for command, _ in can.sent] == [
+            (0.0625, 1.0, 0.0),
+            (0.0625, 1.0, 0.0),
+            (0.0625, 0.94375, -0.375),
+            (0.0625, 0.83125, -0.75),
+            (0.0625, 0.6625, -1.125),
+            (0.0625, 0.4375, -1.5),
+        ]
+        stamps = [stamp_ns for _, stamp_ns in can.sent]
+        assert all(b - a == 150_000_000 for a, b in pairwise(stamps))
+
+    def test_a_driver_who_takes_over_ends_the_ramp(self, follower: FakeFollower) -> None:
+        rig, _ = can_only(follower)
+        for _ in range(7):
+            tick(rig, stale=True)
+        report = tick(rig, engaged=False)
+        assert (report.life.state, report.outcome) == (State.READY, Outcome.PUBLISHED)
+
+    def test_the_log_has_one_line_for_each_state(self, follower: FakeFollower) -> None:
+        rig, _ = can_only(follower)
+        for _ in range(40):
+            tick(rig, stale=True)
+        assert states(rig) == [
+            "READY: commands are sent, but the operation mode is not AUTONOMOUS with control"
+            " enabled",
+            "ACTIVE: all is well",
+            "HOLD: odometry is older than its limit",
+            "STOP: odometry is older than its limit",
+            "SILENT: odometry is older than its limit",
+        ]
+
+
+class TestSilence:
+    def silent(self, follower: FakeFollower) -> tuple[Rig, RecordingOutput]:
+        output = RecordingOutput("dds")
+        rig = Rig(follower, [output])
+        tick(rig, engaged=False)
+        tick(rig)
+        assert follower.allowed
+        for _ in range(5):
+            report = tick(rig, stale=True)
+        assert report.life == (State.SILENT, Reason.INPUT_STALE, Reason.INPUT_STALE)
+        del output.sent[:], follower.calls[:]
+        return rig, output
+
+    def test_the_controllers_run_on_as_in_manual_mode(self, follower: FakeFollower) -> None:
+        rig, output = self.silent(follower)
+        for _ in range(5):
+            report = tick(rig)
+            assert report.life == (State.SILENT, Reason.LATCHED, Reason.INPUT_STALE)
+            assert report.outcome is Outcome.FORBIDDEN and report.command is None
+            assert not follower.allowed
+        names = [call[0] for call in follower.calls]
+        assert names.count("lateral") == names.count("longitudinal") == names.count("sync") == 5
+        assert output.sent == []
+
+    def test_without_their_inputs_they_do_not(self, follower: FakeFollower) -> None:
+        rig, output = self.silent(follower)
+        tick(rig, stale=True)
+        assert "lateral" not in [call[0] for call in follower.calls]
+        assert output.sent == []
+
+    def test_engaging_anew_ends_it(self, follower: FakeFollower) -> None:
+        rig, output = self.silent(follower)
+        found = [tick(rig, engaged=engaged).life.state for engaged in (True, False, True)]
+        assert found == [State.SILENT, State.READY, State.ACTIVE]
+        assert len(output.sent) == 2
+        assert follower.allowed
+
+    def test_a_moving_vehicle_finds_a_started_island_silent(self, follower: FakeFollower) -> None:
+        rig = Rig(follower)
+        report = tick(rig, vx=1.0)
+        assert report.life.reason is Reason.RESTARTED_WHILE_MOVING
+        assert rig.command() is None
+        assert len(states(rig)) == 1
