@@ -43,7 +43,7 @@ def test_another_release_is_refused_in_one_line(monkeypatch: pytest.MonkeyPatch)
 
 
 def test_the_functions_exist() -> None:
-    for name in ("take", "write", "take_endpoint", "get_matched_publication_data"):
+    for name in ("take", "write", "dispose", "take_endpoint", "get_matched_publication_data"):
         assert callable(getattr(_clayer, f"ddspy_{name}"))
 
 
@@ -114,6 +114,14 @@ def test_a_peer_s_policies_that_cannot_be_read_do_not_stop_discovery(
     (seen,) = wait_for(lambda: own.publications(TOPIC))
     assert (seen.guid, seen.type_name, seen.type_hash) == (publisher.guid, inputs.STEERING, "")
     assert seen.qos == DEFAULT
+
+
+def test_what_cannot_be_disposed_is_told(pair: tuple[Publisher, Subscription]) -> None:
+    publisher, _ = pair
+    publisher.close()
+    assert binding.dispose(publisher._ref) < 0
+    publisher.withdraw()
+    assert (publisher.failed, bool(publisher.last_error)) == (1, True)
 
 
 def test_delete_is_at_once_and_only_once(participant: NewParticipant) -> None:

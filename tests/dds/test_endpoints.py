@@ -122,6 +122,20 @@ def test_a_late_joiner_receives_the_last_state(participant: NewParticipant) -> N
     assert late.received == 1
 
 
+def test_a_late_joiner_receives_nothing_that_was_withdrawn(participant: NewParticipant) -> None:
+    publisher = participant().publisher(STEERING.name, STEERING.type_name, LATCHED)
+    present = participant().subscription(STEERING.name, STEERING.type_name, LATCHED)
+    publisher.write(report(1))
+    newest(present)
+    publisher.withdraw()
+    late = participant().subscription(STEERING.name, STEERING.type_name, LATCHED)
+    wait_for(lambda: not late.take_all() and late.invalid)
+    assert late.received == 0
+    publisher.write(report(2))
+    for subscription in (present, late):
+        assert inputs.decode_steering(newest(subscription).data).stamp.sec == 2
+
+
 def test_more_than_one_last_state_when_the_depth_says_so(participant: NewParticipant) -> None:
     qos = LATCHED.with_depth(3)
     publisher = participant().publisher(STEERING.name, STEERING.type_name, qos)

@@ -94,6 +94,16 @@ class TestOutput:
         report = rig.tick()
         assert (report.outcome, report.detail) == (Outcome.OUTPUT_FAILED, "can")
 
+    def test_silence_takes_the_last_command_back(self, rig: Rig) -> None:
+        rig.everything(ROWS)
+        assert rig.tick().published
+        assert rig.listen(topics.CONTROL).take_newest() is not None
+        assert not rig.tick(0.6).published
+        assert rig.listen(topics.CONTROL).take_newest() is None
+        rig.everything(ROWS)
+        assert rig.tick().published
+        assert rig.listen(topics.CONTROL).take_newest() is not None
+
     def test_outputs_are_closed_with_the_node(self, follower: FakeFollower) -> None:
         output = RecordingOutput("can")
         with Rig(follower, [output]).node:

@@ -47,6 +47,13 @@ def test_a_late_joiner_gets_what_is_latched(
     assert (domain.subscription(*TOPIC, reader_qos).take_newest() is not None) == arrives
 
 
+def test_a_late_joiner_does_not_get_what_was_withdrawn(domain: MemoryDomain) -> None:
+    writer = domain.publisher(*TOPIC, LATCHED)
+    writer.write(b"x")
+    writer.withdraw()
+    assert domain.subscription(*TOPIC, LATCHED).take_newest() is None
+
+
 def test_writers_have_different_identities(domain: MemoryDomain) -> None:
     assert domain.publisher(*TOPIC, DEFAULT).guid != domain.publisher(*TOPIC, DEFAULT).guid
 

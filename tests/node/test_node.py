@@ -87,6 +87,9 @@ def test_a_publisher_that_fails_is_counted_and_logged_once() -> None:
         def write(self, data: bytes) -> bool:
             return False
 
+        def withdraw(self) -> None:
+            pass
+
     logger = make().logger
     writer = TopicWriter(topics.CONTROL, Broken(), logger)
     assert [writer.write(b"x") for _ in range(3)] == [False] * 3

@@ -22,6 +22,9 @@ MINIMUM_WRITE = 4
 
 _convert_qos: Any = cqos_to_qos
 
+_NO_KEY = bytes((0, 1, 0, 0))
+"""Serialized key of a topic that has none: the header alone."""
+
 RETCODE_BAD_PARAMETER = -3
 RETCODE_TIMEOUT = -10
 
@@ -79,6 +82,12 @@ def write(writer: int, data: bytes) -> int:
     if len(data) < MINIMUM_WRITE:
         return RETCODE_BAD_PARAMETER
     code: int = _clayer.ddspy_write(writer, filled(data))
+    return code
+
+
+def dispose(writer: int) -> int:
+    """Take back what a writer of a topic without key has said; 0 or a negative return code."""
+    code: int = _clayer.ddspy_dispose(writer, _NO_KEY)
     return code
 
 

@@ -71,6 +71,16 @@ class Publisher:
         self.sent += 1
         return True
 
+    def withdraw(self) -> None:
+        """Take back the last message: whoever subscribes later does not receive it.
+
+        Subscriptions that had it are told, without data. On a topic of a known type only.
+        """
+        code = binding.dispose(self._ref)
+        if code < 0:
+            self.failed += 1
+            self.last_error = binding.strerror(code)
+
     def matched(self) -> int:
         """Return how many subscriptions receive from this publisher now."""
         return len(self._writer.get_matched_subscriptions())

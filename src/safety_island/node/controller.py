@@ -81,6 +81,7 @@ class ControllerNode(Node):
         guard = Guard(parameters.guard, parameters.vehicle.wheel_base, timeout_s)
         self.check = CommandCheck(guard, timeout_s, self.logger)
         self.arming = Arming(self.subscription(topics.ARM), self.logger)
+        self._control_topics: list[ControlTopic] = []
         self.outputs = tuple(outputs) if outputs is not None else (self.control_topic(),)
         self.report: TickReport | None = None
         """The last tick."""
@@ -99,7 +100,9 @@ class ControllerNode(Node):
         """Make the output that publishes ``control_cmd``."""
         publisher = self.publisher(topics.CONTROL)
         self.identity.own.add(publisher.guid)
-        return ControlTopic(topics.CONTROL, publisher, self.logger)
+        topic = ControlTopic(topics.CONTROL, publisher, self.logger)
+        self._control_topics.append(topic)
+        return topic
 
     def on_tick(self, due: Tick) -> None:
         """Do one tick of ``run``."""
@@ -127,6 +130,9 @@ class ControllerNode(Node):
             self.logger.error("the tick failed: %s", detail, throttled=True)
             self.life_cycle.fault()
         self.inputs.warn(now, self.clock.wall_ns())
+        if self._command is None:  # silence takes back what was said last
+            for topic in self._control_topics:
+                topic.withdraw()
         self._ticks += 1
         self._last_tick = now
         lateral_ns, longitudinal_ns = self.controllers.spent_ns

@@ -82,6 +82,10 @@ class MemoryPublisher:
             reader.put(self.last)
         return True
 
+    def withdraw(self) -> None:
+        """Take back the last message: whoever subscribes later does not receive it."""
+        self.last = None
+
 
 class _Topic:
     def __init__(self, type_name: str) -> None:

@@ -51,11 +51,24 @@ class TopicWriter:
 
 
 class ControlTopic(TopicWriter):
-    """Publishes ``autoware_control_msgs/msg/Control``."""
+    """Publishes ``autoware_control_msgs/msg/Control``.
+
+    The topic keeps its last message for those who come later. A bridge that is started while the
+    island is silent would hand it on as if it were new, so silence takes it back.
+    """
+
+    _stands = False
 
     def send(self, command: Control, stamp_ns: int) -> bool:
         """Publish a command; its stamps are in it."""
+        self._stands = True
         return self.write(encode_control(command))
+
+    def withdraw(self) -> None:
+        """Take back the last command, once."""
+        if self._stands:
+            self._stands = False
+            self._publisher.withdraw()
 
 
 class ProcessingTime(TopicWriter):

@@ -37,6 +37,9 @@ class Publisher(Protocol):
     def write(self, data: bytes) -> bool:
         """Send one message; False (counted and told) when it could not be handed over."""
 
+    def withdraw(self) -> None:
+        """Take back the last message: whoever subscribes later does not receive it."""
+
 
 class Subscription(Protocol):
     """Where the messages of one topic are taken."""
