@@ -74,8 +74,8 @@ class InputSet:
             if item.writers.others > others:
                 self._logger.warning("%s has %d publishers", item.topic, item.writers.others + 1)
         self._unsettled_until = now + WINDOW_S
-        if not self._mode.writers.alive:
-            self._mode.stamps.forget()  # the next publisher may tell the same again
+        if not self._mode.writers.owner:
+            self._mode.hand_over(now)  # what is sent on change is not sent again
 
     def take(self, now: float, since: float) -> int:
         """Take what came since the last tick; return how many samples were refused."""

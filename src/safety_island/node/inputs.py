@@ -165,6 +165,8 @@ class Input:
         """Stamp of the sample in force [ns]."""
         self.message: Any = None
         """The sample in force, decoded."""
+        self._other: Sample | None = None
+        """The newest sample of a publisher that the island does not keep to."""
         self._decode = spec.decoder(follower)
         self._check = None if spec.check is None else partial(spec.check, ContentGate(params))
         self._offer = partial(spec.offer, follower)
@@ -189,6 +191,14 @@ class Input:
             refused += 1
         return refused
 
+    def hand_over(self, now: float) -> None:
+        """The publisher that was kept to is gone: take what another one has said meanwhile."""
+        sample, self._other = self._other, None
+        self.stamps.forget()  # the next one may have another clock, or tell the same again
+        lives = sample is not None and sample.writer_guid in self.writers.alive
+        if sample is not None and lives and self._accept(sample, now):
+            self.accepted_at = now
+
     def drop(self) -> None:
         """Drop what waits to be taken, and forget when the sample in force came."""
         self.subscription.take_all()
@@ -209,6 +219,8 @@ class Input:
         except Exception as error:  # a fault of ours must not let one topic stop the ticks
             return self._refuse(SampleReason.FAULT, describe(error))
         if reason is not None:
+            if reason is SampleReason.OTHER_PUBLISHER:
+                self._other = sample
             return self._refuse(reason, reason.name.lower().replace("_", " "))
         self.stamps.hold(data, now)
         self.accepted += 1
