@@ -1,0 +1,43 @@
+"""The bridge dies and comes back: row 75 of the catalogue of faults, live."""
+
+from __future__ import annotations
+
+import time
+
+import pytest
+
+from safety_island.control.status import Mode
+from safety_island.dds import topics
+from safety_island.life_cycle.reason import Reason
+from safety_island.life_cycle.state import State
+from tests.live.scene import BRIDGE, Scene
+
+pytestmark = pytest.mark.live
+LOST = (Reason.INPUT_STALE, Reason.PARTITION)
+
+
+def test_a_bridge_that_comes_back_is_driven_over_again(drive: Scene) -> None:
+    drive.kill(BRIDGE)
+    silent = drive.state(State.SILENT).message
+    assert silent.reason in LOST
+    assert silent.latched_cause in LOST
+    modes = drive.main.heard[topics.OPERATION_MODE]
+    drive.until(lambda: modes[-1].message.mode == Mode.STOP, "autonomous mode is left")
+    _comes_back(drive)
+
+
+def test_a_bridge_that_is_back_before_its_lease_has_ended(drive: Scene) -> None:
+    drive.kill(BRIDGE)
+    _comes_back(drive)
+
+
+def _comes_back(drive: Scene) -> None:
+    restarted_ns = time.time_ns()
+    known = len(drive.main.heard[topics.CONTROL])
+    drive.start(BRIDGE)
+    drive.state(State.READY, Reason.NOT_AUTONOMOUS)
+    drive.state(State.ACTIVE)
+    drive.moves()
+    newer = drive.main.heard[topics.CONTROL][known:]
+    assert newer
+    assert all(command.message.stamp.nanoseconds > restarted_ns for command in newer)
