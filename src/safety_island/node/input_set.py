@@ -167,12 +167,16 @@ class InputSet:
         """Say why the vehicle is not under control, NONE when it is."""
         if self._mode.message is None:
             return Reason.WAITING_FOR_INPUT
-        if not self._mode.writers.alive:
+        if not self._has_mode_writer():
             return Reason.MODE_WRITER_GONE
         state: OperationMode = self._mode.message
         if state.mode == Mode.AUTONOMOUS and state.is_autoware_control_enabled:
             return Reason.NONE
         return Reason.NOT_AUTONOMOUS
+
+    def _has_mode_writer(self) -> bool:
+        """Whether the one who told the mode in force still lives; another says nothing yet."""
+        return self._mode.source_guid in self._mode.writers.alive
 
     def speed(self) -> float:
         """Return the speed [m/s] that was measured last; 0 before the first time."""

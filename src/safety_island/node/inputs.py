@@ -159,6 +159,8 @@ class Input:
         """Monotonic time [s] before which the sample in force was not received."""
         self.writer_guid = b""
         """Writer of the sample that was taken last."""
+        self.source_guid = b""
+        """Writer of the sample in force."""
         self.sent_ns = 0
         """When that sample was written, by the writer's wall clock [ns]; only for reports."""
         self.stamp_ns = 0
@@ -223,6 +225,7 @@ class Input:
                 self._other = sample
             return self._refuse(reason, reason.name.lower().replace("_", " "))
         self.stamps.hold(data, now)
+        self.source_guid = sample.writer_guid
         self.accepted += 1
         self.refused_in_a_row = 0
         self.stamp_ns, self.message = self.stamps.stamp_ns, message
