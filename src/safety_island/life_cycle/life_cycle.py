@@ -138,7 +138,7 @@ class LifeCycle:
         params = self._params
         if self.overrun.over:
             return Reason.OVERRUN
-        if self._faults.count >= params.fault_ticks:
+        if max(self._faults.count, self._crashes.count) >= params.fault_ticks:
             return Reason.CONTROLLER_FAULT
         if 0.0 < params.mpc_failure_time < self._unsolved.lasts_s(now):
             return Reason.MPC_FAILED
