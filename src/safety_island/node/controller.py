@@ -125,6 +125,8 @@ class ControllerNode(Node):
             refused = self._take(now, due.skipped)
             blocked = self._blocked(now)
             outcome, detail = self._control(blocked, now, start_ns)
+        except MemoryError:  # nothing can be trusted any more: end, be silent, be started anew
+            raise
         except Exception as error:  # a tick may fail, the process may not
             outcome, detail = Outcome.FAULT, describe(error)
             self.logger.error("the tick failed: %s", detail, throttled=True)
@@ -244,10 +246,22 @@ class ControllerNode(Node):
         offset_ns = self.clock.wall_ns() - self.clock.monotonic_ns()
         self._command = command = result.to_control(offset_ns)
         stamp_ns = command.stamp.nanoseconds
-        results = [output.send(command, stamp_ns) for output in self.outputs]
+        results = [self._give(output, command, stamp_ns) for output in self.outputs]
         if any(results):
             return sent, ""
         return Outcome.OUTPUT_FAILED, ", ".join(output.name for output in self.outputs)
+
+    def _give(self, output: Output, command: Control, stamp_ns: int) -> bool:
+        """Give a command to one output; whatever happens there stops no other output."""
+        try:
+            return output.send(command, stamp_ns)
+        except MemoryError:
+            raise
+        except Exception as error:  # against its contract
+            output.failed += 1
+            detail = describe(error)
+            self.logger.error("output %s failed: %s", output.name, detail, throttled=True)
+            return False
 
     def _tell_times(self) -> None:
         stamp = Time.from_nanoseconds(self.clock.wall_ns())

@@ -37,9 +37,11 @@ class Controllers:
         """Of the lateral part: the kernels leave it to their caller."""
 
     def run(self, now: float) -> Ran:
-        """Run both at ``now`` [s, monotonic]; an exception in them is a value."""
+        """Run both at ``now`` [s, monotonic]; an exception but MemoryError is a value."""
         try:
             return self._run(now)
+        except MemoryError:
+            raise
         except Exception as error:  # a tick may fail, the process may not
             fault = describe(error)
             self._logger.error("the controllers failed: %s", fault, throttled=True)

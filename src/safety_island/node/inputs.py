@@ -218,6 +218,8 @@ class Input:
             reason = self._judge(message, data, now)
         except DecodeError as error:
             return self._refuse(SampleReason[error.reason.name], str(error))
+        except MemoryError:
+            raise
         except Exception as error:  # a fault of ours must not let one topic stop the ticks
             return self._refuse(SampleReason.FAULT, describe(error))
         if reason is not None:

@@ -39,10 +39,13 @@ class TopicWriter:
 
     def write(self, data: bytes) -> bool:
         """Send one message; False when it did not go out."""
-        if self._publisher.write(data):
-            return True
+        try:
+            if self._publisher.write(data):
+                return True
+            problem = self._publisher.last_error
+        except OSError as error:  # no descriptor, no buffer: the topic's loss, not the tick's
+            problem = str(error)
         self.failed += 1
-        problem = self._publisher.last_error
         self._logger.error("not sent: %s", problem, throttled=True, site=self.name)
         return False
 
