@@ -72,7 +72,9 @@ class StampGate:
             if stamp_ns <= self._older_ns or self._older_ns < 0:
                 self._older_since = now
             self._older_ns, self._older_at = stamp_ns, now
-        if now - self._older_since < self.limit_s * STEP_BACK_SHARE:
+        is_sent_on_change = self.limit_s == math.inf  # refused, it would not be told again
+        searched_s = now - self._older_since
+        if not is_sent_on_change and searched_s < self.limit_s * STEP_BACK_SHARE:
             return SampleReason.OLDER
         self.steps_back += 1
         return None

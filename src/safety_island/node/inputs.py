@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -179,19 +179,31 @@ class Input:
         samples = self.subscription.take_all()
         if not samples:
             return 0
-        count = len(samples)
-        self.rate.note(count, now)
-        if count > 1:
-            self.superseded += count - 1
+        self.rate.note(len(samples), now)
+        refused = 0
+        if self.writers.others:
+            samples, refused = self._without_foreign(samples)
+        if len(samples) > 1:
+            self.superseded += len(samples) - 1
             self.overtaken += overtaken(samples)
             samples = newest_first(samples)
-        refused = 0
         for sample in samples:
             if self._accept(sample, now):
                 self.accepted_at = since
                 break
             refused += 1
         return refused
+
+    def _without_foreign(self, samples: Sequence[Sample]) -> tuple[Sequence[Sample], int]:
+        """Leave out what others published, so that it cannot crowd out the owner's samples."""
+        found = []
+        for sample in samples:
+            if self.writers.takes(sample.writer_guid):
+                found.append(sample)
+            else:
+                self._other = sample
+                self._refuse(SampleReason.OTHER_PUBLISHER, "other publisher")
+        return found, len(samples) - len(found)
 
     def hand_over(self, now: float) -> None:
         """The publisher that was kept to is gone: take what another one has said meanwhile."""
