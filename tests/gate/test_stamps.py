@@ -147,13 +147,13 @@ class TestOlder:
                 assert offer(gate, 49.95 + 0.125 * tick, now) is OLDER
         assert gate.steps_back == 1
 
-    def test_without_an_age_limit_only_a_pause_lets_older_ones_in(self) -> None:
+    def test_without_an_age_limit_the_order_of_arrival_counts(self) -> None:
+        """What is sent on change is not told again: a STOP with an older stamp must not be lost."""
         gate = StampGate()
         offer(gate, 100.0, 1000.0)
-        assert [offer(gate, 50.0 + i, 1001.0 + i) for i in range(9)] == [OLDER] * 9
-        assert offer(gate, 60.0, 1010.0) is OLDER
-        assert offer(gate, 60.5, 1010.001) is None
-        assert gate.steps_back == 0
+        assert [offer(gate, 50.0 + i, 1001.0 + i) for i in range(3)] == [None] * 3
+        assert offer(gate, 20.0, 1004.0) is None
+        assert gate.steps_back == 2
 
 
 class TestBeginAnew:

@@ -88,6 +88,7 @@ class TestCrash:
         assert [self.crash(island) for _ in range(2)] == [WELL] * 2
         assert self.crash(island) == silent(CRASHED)
         assert self.crash(island) == silent(CRASHED)
+        assert island.tick() == silent(CRASHED)  # it stands until a whole tick went well
         assert island.tick() == silent(Reason.LATCHED, CRASHED)
 
     def test_one_tick_that_does_not_forgives(self) -> None:
@@ -109,6 +110,7 @@ class TestCrash:
         for _ in range(3):
             life = self.crash(island)
         assert life == Life(State.INIT, CRASHED)
+        assert island.tick(disengaged=MANUAL) == Life(State.INIT, CRASHED)
         assert island.tick(disengaged=MANUAL) == Life(State.READY, MANUAL)
 
     @pytest.mark.parametrize("ticks", [1, 4])
