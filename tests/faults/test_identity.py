@@ -1,0 +1,167 @@
+"""Rows 72 to 76 of the fault catalogue: publishers that are too many, new, or gone."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from safety_island.cli.main import main
+from safety_island.gate.reason import SampleReason
+from safety_island.life_cycle.reason import Reason
+from safety_island.life_cycle.state import State
+from tests.faults import wire
+from tests.faults.checks import (
+    BOTH,
+    bound,
+    rearms,
+    silent_within,
+    stays_active,
+    stays_latched,
+    subject,
+)
+from tests.faults.scene import AGED, INPUTS, SLOW, Scene
+
+EACH = pytest.mark.parametrize("key", INPUTS)
+
+
+SILENT_POLICY = {"gate.second_publisher": "silent"}
+
+
+def spoof(scene: Scene, key: str) -> Callable[[], None]:
+    """Let a second writer say the same again and again, under stamps that are ahead."""
+    intruder = scene.wires[key].intrude()
+    writes = [True]
+
+    def write() -> None:
+        if writes[0]:
+            ahead = scene.remote_clock.wall_ns() + 10**9
+            ((_, data),) = wire.stamped(ahead // 10**9, ahead % 10**9)(scene.wires[key].sent[0])
+            intruder.write(data)
+            scene.clock.call_at(scene.clock.monotonic_ns() + 4_000_000, write)
+
+    def leave() -> None:
+        writes[0] = False
+        intruder.close()
+
+    write()
+    return leave
+
+
+@BOTH
+@EACH
+def test_row_72_the_first_publisher_is_kept_and_the_second_told(key: str, period_s: float) -> None:
+    """However much the second one says, no bit of a command changes."""
+    twin, scene = Scene(period_s).drive(), Scene(period_s).drive()
+    spoof(scene, key)
+    assert stays_active(scene, 3.0) == stays_active(twin, 3.0)
+    assert scene.refused(key, SampleReason.OTHER_PUBLISHER) > 100
+    assert scene.input(key).writers.others == 1
+    assert scene.input(key).writers.owner == scene.wires[key].guid
+    assert "has 2 publishers" in scene.log_text
+
+
+def test_row_72_a_flood_does_not_hide_that_somebody_disengaged() -> None:
+    scene = Scene().drive()
+    spoof(scene, "operation_mode")
+    scene.world._engage = False
+    scene.disengage()
+    assert scene.run(0.3)[-1].state is State.READY
+
+
+@EACH
+def test_row_72_it_goes_silent_where_that_is_the_policy(key: str) -> None:
+    scene = Scene(overrides=SILENT_POLICY).drive()
+    leave = spoof(scene, key)
+    first = silent_within(scene, scene.now, SLOW)
+    assert (first.reason, subject(first)) == (Reason.SECOND_PUBLISHER, key)
+    leave()
+    stays_latched(scene, Reason.SECOND_PUBLISHER)
+    rearms(scene)
+
+
+def test_row_72_the_second_is_taken_when_the_first_is_gone() -> None:
+    scene = Scene().drive()
+    spare = scene.wires["steering"].intrude()
+    stays_active(scene, 1.0)
+    scene.inject(wire.divert(spare.write), "steering")
+    scene.wires["steering"].stop()
+    stays_active(scene, 3.0)
+    assert scene.input("steering").writers.owner == spare.guid
+
+
+@BOTH
+@pytest.mark.parametrize("key", AGED)
+def test_row_73_a_publisher_that_flaps_ends_the_output(key: str, period_s: float) -> None:
+    scene = Scene(period_s).drive()
+    flapping = [True]
+
+    def flap() -> None:
+        if flapping[0]:
+            scene.wires[key].restart()
+            scene.clock.call_at(scene.clock.monotonic_ns() + 100_000_000, flap)
+
+    since = scene.now
+    flap()
+    first = silent_within(scene, since, 1.0)
+    assert (first.state, first.reason) == (State.SILENT, Reason.WRITER_FLAPPING)
+    assert subject(first) == key
+    flapping[0] = False
+    scene.run(1.5)
+    stays_latched(scene, Reason.WRITER_FLAPPING)
+    rearms(scene)
+
+
+@pytest.mark.parametrize("key", AGED)
+def test_row_73_one_restart_of_a_publisher_is_none_of_that(key: str) -> None:
+    scene = Scene().drive()
+    scene.wires[key].restart()
+    stays_active(scene, 3.0)
+
+
+@BOTH
+def test_row_74_a_participant_that_crashed_is_a_partition(period_s: float) -> None:
+    """Its lease is over, so all its writers go at once; live: tests of the demo."""
+    scene = Scene(period_s).drive()
+    since = scene.now
+    for key in INPUTS:
+        scene.wires[key].stop()
+    first = scene.tick()
+    assert (first.state, first.reason) == (State.READY, Reason.MODE_WRITER_GONE)
+    silent_within(scene, since, bound("odometry", period_s))
+    assert scene.rows[-1].state is State.INIT
+
+
+@BOTH
+def test_row_75_after_a_restart_of_the_bridge_no_old_sample_counts(period_s: float) -> None:
+    """Its new writers begin with what the old ones had said last."""
+    scene = Scene(period_s).drive()
+    old = {key: scene.wires[key].sent[0] for key in AGED}
+    for key in INPUTS:
+        scene.wires[key].stop()
+    scene.run(2.0)
+    accepted = {key: scene.input(key).accepted for key in AGED}
+    scene.inject(wire.drop)
+    for key in INPUTS:
+        scene.wires[key].restart()
+    for key in AGED:
+        scene.wires[key].release([old[key]])
+    assert {row.output for row in scene.run(1.0)} == {"silent"}
+    assert {key: scene.input(key).accepted for key in AGED} == accepted
+    scene.clear()
+    scene.main_compute._told_mode = None
+    scene.run(1.0)
+    stays_active(scene, 1.0)
+
+
+def test_row_76_a_bridge_that_closes_a_loop_does_not_start(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Forth in one entry and back in another; every shape of loop: tests/bridge/test_routes.py."""
+    path = tmp_path / "loop.yaml"
+    entry = "  {0}: {{type: std_msgs/msg/Header, from_domain: {1}, to_domain: {2}, remap: {3}}}\n"
+    path.write_text("topics:\n" + entry.format("a", 1, 2, "b") + entry.format("b", 2, 1, "a"))
+    assert main(["bridge", str(path)]) == 2
+    told = capsys.readouterr().err
+    assert f"{path}:3: /b domain 2 -> 1 as /a closes a loop with" in told

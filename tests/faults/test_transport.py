@@ -1,0 +1,219 @@
+"""Rows 1 to 8 of the fault catalogue: loss, delay, jitter, duplicates, reordering, backlog."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from random import Random
+
+import pytest
+
+from safety_island.gate.reason import SampleReason
+from safety_island.life_cycle.reason import Reason
+from safety_island.life_cycle.state import State
+from tests.faults import wire
+from tests.faults.checks import (
+    BOTH,
+    JITTER_S,
+    LIMIT_S,
+    bound,
+    rearms,
+    recovers,
+    silent_within,
+    stays_active,
+    stays_latched,
+    subject,
+)
+from tests.faults.scene import AGED, INPUTS, SLOW, Scene
+
+
+@BOTH
+@pytest.mark.parametrize("percent", [1, 5, 20])
+def test_row_01_random_loss_changes_no_state(period_s: float, percent: int, random: Random) -> None:
+    scene = Scene(period_s).drive()
+    scene.inject(wire.lose(percent / 100, random))
+    stays_active(scene, 30.0)
+    scene.clear()
+    stays_active(scene, 1.0)
+
+
+@BOTH
+@pytest.mark.parametrize("phase", range(4))
+@pytest.mark.parametrize("key", AGED)
+def test_row_02_a_lost_topic_ends_the_output(
+    key: str, phase: int, period_s: float, random: Random
+) -> None:
+    scene = Scene(period_s).drive()
+    scene.idle(random.uniform(0.0, period_s))
+    since = scene.inject(wire.drop, key)
+    first = silent_within(scene, since, bound(key, period_s))
+    assert (first.state, first.reason, subject(first)) == (State.SILENT, Reason.INPUT_STALE, key)
+    assert first.at - since > LIMIT_S[key] - 0.1 - period_s - JITTER_S, "too early"
+    assert "state SILENT" in scene.log_text
+    recovers(scene, Reason.INPUT_STALE)
+
+
+@pytest.mark.parametrize("key", AGED)
+def test_row_02_a_lost_topic_while_ready_is_not_latched(key: str) -> None:
+    scene = Scene()
+    scene.world._engage = False
+    assert scene.run(1.0)[-1].state is State.READY
+    since = scene.inject(wire.drop, key)
+    first = silent_within(scene, since, bound(key, SLOW))
+    assert (first.state, first.reason) == (State.INIT, Reason.INPUT_STALE)
+    scene.clear()
+    rows = scene.run(0.6)
+    assert (rows[-1].state, rows[-1].output) == (State.READY, "published")
+
+
+@BOTH
+@pytest.mark.parametrize("key", AGED)
+def test_row_02_can_only_holds_then_stops_then_is_silent(key: str, period_s: float) -> None:
+    scene = Scene(period_s, has_ramp=True).drive()
+    since = scene.inject(wire.drop, key)
+    rows = [row for row in scene.run(9.0) if row.state is not State.ACTIVE]
+    assert rows[0].at - since <= bound(key, period_s)
+    outputs = [row.output for row in rows]
+    assert outputs == sorted(outputs, key=("held", "ramp", "silent").index)
+    assert outputs.count("held") == scene.parameters.life_cycle.hold_ticks
+    assert outputs[-1] == "silent"
+    stopped = next(row for row in rows if row.output == "silent")
+    assert stopped.speed == 0.0
+    recovers(scene, Reason.INPUT_STALE)
+
+
+@BOTH
+def test_row_03_a_partition_ends_the_output_and_is_named(period_s: float) -> None:
+    scene = Scene(period_s).drive()
+    since = scene.inject(wire.drop)
+    silent_within(scene, since, bound("odometry", period_s))
+    assert scene.rows[-1].reason is Reason.PARTITION
+    recovers(scene, Reason.INPUT_STALE)
+
+
+@BOTH
+@pytest.mark.parametrize("delay_ms", [50, 100, 200, 300])
+def test_row_04_a_delay_within_the_limit_is_measured(period_s: float, delay_ms: int) -> None:
+    scene = Scene(period_s).drive()
+    scene.inject(wire.delay(delay_ms / 1e3))
+    stays_active(scene, 5.0)
+    for key in AGED:
+        found = scene.input(key).stamps.delay_s
+        assert found == pytest.approx(delay_ms / 1e3, abs=period_s + 0.025), key
+
+
+@BOTH
+@pytest.mark.parametrize("key", AGED)
+def test_row_04_a_delay_beyond_the_limit_counts_as_lost(key: str, period_s: float) -> None:
+    scene = Scene(period_s).drive()
+    since = scene.inject(wire.delay(LIMIT_S[key] + period_s + 0.1), key)
+    silent_within(scene, since, bound(key, period_s), margin_s=5.0)
+    assert scene.refused(key, SampleReason.DELAYED) > 0
+    recovers(scene, Reason.INPUT_STALE, settle_s=2.0)
+
+
+@BOTH
+def test_row_05_of_a_burst_the_newest_counts(period_s: float) -> None:
+    scene = Scene(period_s).drive()
+    scene.inject(wire.bursts(8), "odometry", "steering", "acceleration")
+    stays_active(scene, 10.0)
+    item = scene.input("odometry")
+    assert item.superseded > item.accepted
+    assert item.stamp_ns / 1e9 > scene.now - 8 * 0.025 - period_s
+
+
+@BOTH
+def test_row_05_jitter_is_counted(period_s: float, random: Random) -> None:
+    scene = Scene(period_s).drive()
+    scene.inject(wire.jitter(0.15, random))
+    stays_active(scene, 10.0)
+    item = scene.input("odometry")
+    assert item.overtaken + item.refused[SampleReason.OLDER] > 0
+
+
+@BOTH
+def test_row_06_duplicates_change_no_bit(period_s: float) -> None:
+    twin, scene = Scene(period_s).drive(), Scene(period_s).drive()
+    scene.inject(wire.duplicate(after_s=0.01))
+    assert stays_active(scene, 10.0) == stays_active(twin, 10.0)
+    counted = sum(
+        item.refused[SampleReason.DUPLICATE] + item.superseded for item in scene.node.inputs.items
+    )
+    assert counted > sum(item.superseded for item in twin.node.inputs.items)
+
+
+@BOTH
+@pytest.mark.parametrize("key", AGED)
+def test_row_06_a_replayed_message_is_no_sign_of_life(key: str, period_s: float) -> None:
+    scene = Scene(period_s).drive()
+    held = scene.wires[key].sent[0]
+    since = scene.inject(wire.change(lambda _: held), key)
+    silent_within(scene, since, bound(key, period_s))
+    assert scene.refused(key, SampleReason.DUPLICATE) > 0
+    recovers(scene, Reason.INPUT_STALE)
+
+
+@BOTH
+def test_row_07_reordered_messages_never_lead_back(period_s: float) -> None:
+    scene = Scene(period_s).drive()
+    for key in INPUTS:
+        scene.inject(wire.swap(), key)
+    stamps = []
+    for _ in range(round(10.0 / period_s)):
+        stays_active(scene, period_s)
+        stamps.append(tuple(scene.input(key).stamp_ns for key in INPUTS))
+    assert all(a <= b for x, y in pairwise(stamps) for a, b in zip(x, y, strict=True))
+    for key in AGED:
+        assert scene.input(key).overtaken + scene.refused(key, SampleReason.OLDER) > 0
+
+
+@BOTH
+@pytest.mark.parametrize("stall_s", [0.2, 0.3])
+def test_row_08_of_a_backlog_only_the_newest_is_used(period_s: float, stall_s: float) -> None:
+    scene = Scene(period_s).drive()
+    kept: dict[str, list[bytes]] = {key: [] for key in AGED}
+    for key in AGED:
+        scene.inject(wire.keep(kept[key]), key)
+    scene.run(stall_s)
+    accepted = {key: scene.input(key).accepted for key in AGED}
+    for key in AGED:
+        scene.wires[key].release(kept[key])
+    scene.inject(wire.drop)
+    row = scene.tick()
+    assert (row.state, row.output) == (State.ACTIVE, "published")
+    for key in AGED:
+        assert scene.input(key).accepted == accepted[key] + bool(kept[key])
+    scene.clear()
+    stays_active(scene, 2.0)
+
+
+@BOTH
+def test_row_08_after_a_stall_of_the_island_no_backlog_is_used(period_s: float) -> None:
+    """The messages of the time before wait in its queues; the vehicle stands when it goes on."""
+    scene = Scene(period_s).drive()
+    scene.inject(wire.drop)
+    backlog = {key: scene.wires[key].sent[0] for key in AGED}
+    accepted = {key: scene.input(key).accepted for key in AGED}
+    scene.idle(5.0)
+    for key in AGED:
+        scene.wires[key].release([backlog[key]])
+    rows = scene.run(1.0)
+    assert rows[0].skipped > 0
+    assert {(row.state, row.output) for row in rows} == {(State.INIT, "silent")}
+    assert {key: scene.input(key).accepted for key in AGED} == accepted
+    assert "begins anew" in scene.log_text
+    scene.clear()
+    rows = scene.run(0.6)
+    assert (rows[-1].state, rows[0].speed) == (State.ACTIVE, 0.0)
+
+
+@BOTH
+def test_row_08_a_stalled_island_does_not_arm_itself_in_motion(period_s: float) -> None:
+    scene = Scene(period_s).drive()
+    since = scene.now
+    scene.idle(0.8)
+    row = scene.tick()
+    assert (row.state, row.output) == (State.INIT, "silent")
+    assert row.speed > 1.0
+    silent_within(scene, since, 0.8)
+    stays_latched(scene, Reason.STALLED)
+    rearms(scene)
