@@ -83,6 +83,15 @@ def test_a_way_there_and_back_is_no_trajectory(
     assert gate.offer_trajectory(there_and_back, 1000.0) is Refusal[wanted]
 
 
+@pytest.mark.parametrize(("speed", "wanted"), [(-0.0009, "ACCEPTED"), (-0.0011, "MIXED_DIRECTION")])
+def test_speeds_of_both_signs_are_no_trajectory(
+    gate: TrajectoryFollower, speed: float, wanted: str
+) -> None:
+    points = make_points(np.arange(40.0))
+    points["v"][10] = speed
+    assert gate.offer_trajectory(points, 1000.0) is Refusal[wanted]
+
+
 def test_points_out_of_order(gate: TrajectoryFollower) -> None:
     order = np.random.default_rng(7).permutation(40)
     shuffled = make_points(np.arange(40.0)[order])

@@ -24,6 +24,8 @@ MAX_SQUARE_NORM = 1.01**2
 
 MAX_BACKTRACK = 0.5
 """Length [m] that a trajectory may lead against the direction of the rest of it."""
+STANDSTILL = 1e-3
+"""Speed [m/s] below which a point has no direction."""
 UNIT_TOLERANCE = 1e-9
 """Square of a norm further than this from 1 is brought back to it; nearer, the bits stay."""
 
@@ -101,8 +103,8 @@ def _length(points, n):
 def check_trajectory(params, points, n):
     """Refusal of a received trajectory ``points[:n]``; nearly unit orientations become units.
 
-    A trajectory leads forward or backward, not both: points in another order than that of driving
-    would lead to and fro.
+    A trajectory leads forward or backward, not both, and so do its speeds: points in another order
+    than that of driving would lead to and fro.
     """
     if n < _FEWEST_POINTS:
         return _TOO_FEW
@@ -111,10 +113,14 @@ def check_trajectory(params, points, n):
     bound = 0.0  # at least the length of the path
     forward = 0.0
     backward = 0.0
+    fastest = 0.0
+    slowest = 0.0
     for i in range(n):
         reason = _check_point(points[i])
         if reason != _ACCEPTED:
             return reason
+        fastest = max(fastest, points[i].v)
+        slowest = min(slowest, points[i].v)
         if i > 0:
             dx = points[i].x - points[i - 1].x
             dy = points[i].y - points[i - 1].y
@@ -127,4 +133,5 @@ def check_trajectory(params, points, n):
     room = (MAX_REFERENCE - _EXTENSION_POINTS) * params[0].traj_resample_dist
     if bound > room and _length(points, n) > room:
         return _TOO_LONG
-    return _MIXED if min(forward, backward) > MAX_BACKTRACK else _ACCEPTED
+    is_mixed = min(forward, backward) > MAX_BACKTRACK or min(fastest, -slowest) > STANDSTILL
+    return _MIXED if is_mixed else _ACCEPTED
