@@ -74,3 +74,12 @@ def test_ros_sees_the_island_as_a_node(namespace: Namespace, ros_node: RosNode) 
     assert [KINEMATIC_STATE, [ODOMETRY]] in graph["subscribes"]
     island.close()
     ros.expect(event("graph", lambda found: found["nodes"] == ["ros_peer"]))
+
+
+def test_ros_passes_over_what_was_taken_back(namespace: Namespace, ros_node: RosNode) -> None:
+    """It hears each state once, and nothing in place of those that were taken back."""
+    ros = ros_node(DOMAIN)
+    island = namespace.island("tests.interop.withdrawing_peer", str(DOMAIN))
+    heard = [ros.expect(event("state"))["x"] for _ in range(10)]
+    assert heard == sorted(set(heard)) and heard[0] >= 1.0
+    island.close()

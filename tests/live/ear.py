@@ -37,6 +37,11 @@ class Heard(NamedTuple):
     """When it was written, by the writer's wall clock [ns]."""
 
 
+def sent_since(commands: list[Heard], start_ns: int) -> list[int]:
+    """Stamps [ns] of the commands that were written after a time of the wall clock [ns]."""
+    return [one.message.stamp.nanoseconds for one in commands if one.sent_ns > start_ns]
+
+
 class Ear:
     """A participant that listens on some topics; ``heard`` has all messages of each, in order."""
 

@@ -115,7 +115,7 @@ class Scene:
         """Wait until the main compute says that the vehicle drives."""
         odometry = self.main.heard[topics.ODOMETRY]
         known = len(odometry)
-        self.until(lambda: any(o.message.vx > 1.0 for o in odometry[known:]), "the vehicle drives")
+        self.until(lambda: any(o.message.vx > 0.5 for o in odometry[known:]), "the vehicle drives")
 
     def _story(self) -> str:
         """The last states, and what the processes said."""
