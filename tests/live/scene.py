@@ -20,6 +20,7 @@ from tests.live.ear import ROUND_S, Ear, Heard
 
 LIMIT_S = 40.0
 """How long to wait for what must come, on a machine that is busy with other tests."""
+LONGEST = ("--duration", "120")  # nobody outlives a run of the tests that was killed
 ISLAND, BRIDGE, VEHICLE = "island", "bridge", "main-compute"
 Wanted = Callable[[Status], bool]
 
@@ -40,9 +41,9 @@ class Scene:
         config = folder / "bridge.yaml"
         config.write_text(bridge_file(domains), "utf-8")
         self._commands = {
-            ISLAND: ["run", "--domain", str(island)],
-            BRIDGE: ["bridge", str(config)],
-            VEHICLE: ["main-compute", "--domain", str(main), "--repeat"],
+            ISLAND: ["run", *LONGEST, "--domain", str(island)],
+            BRIDGE: ["bridge", *LONGEST, str(config)],
+            VEHICLE: ["main-compute", *LONGEST, "--domain", str(main), "--repeat"],
         }
 
     def start(self, name: str, at: str = "") -> None:
