@@ -167,6 +167,11 @@ class Wire:
                 self._clock.call_at(at_ns, partial(self._deliver, changed))
         return True
 
+    def withdraw(self) -> None:
+        """Take back what it said last."""
+        if self._writer is not None:
+            self._writer.withdraw()
+
     def _deliver(self, data: bytes) -> None:
         if self._writer is not None:
             self._writer.write(data)
