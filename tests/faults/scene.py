@@ -127,9 +127,7 @@ class Scene:
     def new_node(self, has_ramp: bool = False) -> ControllerNode:
         """Make an island on the domain of the scene."""
         mode = OutputMode.CAN_ONLY if has_ramp else OutputMode.DDS_AND_CAN
-        return ControllerNode(
-            self.platform, self.domain, self.follower, self.parameters, mode=mode
-        )
+        return ControllerNode(self.platform, self.domain, self.follower, self.parameters, mode=mode)
 
     def _attach_can(self, only: bool) -> None:
         mode = OutputMode.CAN_ONLY if only else OutputMode.DDS_AND_CAN
