@@ -1,0 +1,183 @@
+"""Runs the tests of a room against a mutant, in a fork of a process that is warm already."""
+
+from __future__ import annotations
+
+import contextlib
+import gc
+import importlib
+import importlib.util
+import io
+import os
+import signal
+import sys
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from importlib.machinery import ModuleSpec, SourceFileLoader
+from pathlib import Path
+from types import CodeType
+from typing import Any
+
+import pytest
+from hypothesis import Phase, settings
+
+from tests.mutation.mutants import Mutant
+
+ROOT = Path(__file__).parents[2]
+SOURCE = ROOT / "src"
+
+WARM = ("safety_island.control.follower", "safety_island.params", "tests.conftest")
+"""Slow to import; what they import of the rooms below is forgotten again."""
+
+ABOVE = ("gate", "life_cycle", "guard", "can", "params", "node", "sim", "replay", "cli", "bench")
+"""Rooms that are mutated or import one that is; a fork imports them anew."""
+
+OPTIONS = (
+    *("-x", "-q", "-p", "no:cacheprovider"),
+    *("-p", "pytest_timeout", "-p", "_hypothesis_pytestplugin"),  # and no other plugin
+    *("-W", "ignore::pytest.PytestAssertRewriteWarning"),  # plugins are imported before the fork
+)
+
+
+@dataclass(frozen=True)
+class Room:
+    """Sources that are mutated, and the tests that must notice."""
+
+    name: str
+    sources: tuple[str, ...]
+    tests: tuple[str, ...]
+
+    def files(self) -> list[Path]:
+        """Return every source file."""
+        paths = [SOURCE / "safety_island" / name for name in self.sources]
+        found = [sorted(path.glob("*.py")) if path.is_dir() else [path] for path in paths]
+        return [file for files in found for file in files]
+
+    def test_paths(self) -> list[str]:
+        """Return the test files; recorded runs are left out, they take seconds."""
+        return [
+            str(file)
+            for path in (ROOT / name for name in self.tests)
+            for file in (sorted(path.rglob("test_*.py")) if path.is_dir() else [path])
+            if file.name != "test_golden.py"
+        ]
+
+
+PAGE = "tests/params/test_document.py"
+"""The page of the parameters, which holds the units and ranges of a room's own."""
+
+ROOMS = (
+    Room("gate", ("gate",), ("tests/gate", PAGE)),
+    Room("life_cycle", ("life_cycle",), ("tests/life_cycle", PAGE)),
+    Room("guard", ("guard",), ("tests/guard", PAGE)),
+    Room("can/encoder.py", ("can/encoder.py",), ("tests/can/test_encoder.py",)),
+)
+
+
+class _Mutated(SourceFileLoader):
+    """Finds one module, with a tree in place of its source."""
+
+    def __init__(self, path: Path, tree: Any) -> None:
+        parts = path.relative_to(SOURCE).with_suffix("").parts
+        self.is_init = parts[-1] == "__init__"
+        super().__init__(".".join(parts[:-1] if self.is_init else parts), str(path))
+        self.tree = tree
+
+    def find_spec(self, name: str, path: Any = None, target: Any = None) -> ModuleSpec | None:
+        if name != self.name:
+            return None
+        places = [str(Path(self.path).parent)] if self.is_init else None
+        return importlib.util.spec_from_file_location(
+            name, self.path, loader=self, submodule_search_locations=places
+        )
+
+    def get_code(self, fullname: str) -> CodeType:
+        code: CodeType = compile(self.tree, self.path, "exec")
+        return code
+
+
+def warm_up() -> None:
+    """Import what every fork needs; property tests try less, and the same each time."""
+    for name in WARM:
+        importlib.import_module(name)
+    settings.register_profile(
+        "mutate",
+        max_examples=30,
+        derandomize=True,
+        database=None,
+        deadline=None,
+        phases=(Phase.explicit, Phase.generate),  # that it fails is enough: no shrinking
+    )
+    settings.load_profile("mutate")
+    os.environ["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"
+    with contextlib.redirect_stdout(io.StringIO()):
+        pytest.main([*OPTIONS, "--collect-only", *ROOMS[-1].test_paths()])
+    gc.collect()
+    gc.freeze()  # pytest collects garbage at its end, which is not to walk all that is here
+
+
+def start(room: Room, mutant: Mutant | None, limit_s: int) -> int:
+    """Fork a process that tests a mutant (None: the source as it is); return its id.
+
+    It ends with 0 when every test passes, by SIGALRM when they take too long.
+    """
+    pid = os.fork()
+    if pid:
+        return pid
+    signal.alarm(limit_s)
+    status = 1
+    try:
+        _silence()
+        if mutant is not None:
+            finder: Any = _Mutated(ROOT / mutant.file, mutant.tree)
+            sys.meta_path.insert(0, finder)
+        _forget_rooms()
+        status = _first_failure(room.test_paths())
+    finally:
+        os._exit(status)
+
+
+def _first_failure(paths: Sequence[str]) -> int:
+    """Test file after file, for most mutants die in the first and need not wait for the rest."""
+    for path in paths:
+        if status := int(pytest.main([*OPTIONS, path])):
+            return status
+    return 0
+
+
+def _silence() -> None:
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, 1)
+    os.dup2(nowhere, 2)
+
+
+def _forget_rooms() -> None:
+    for name in list(sys.modules):
+        room = name.split(".")[1:2]
+        is_test = name.startswith("tests.") and room != ["mutation"]
+        if is_test or (name.startswith("safety_island.") and room[0] in ABOVE):
+            del sys.modules[name]
+
+
+def run(
+    room: Room, found: Sequence[Mutant], jobs: int, limit_s: int, told: Callable[[int, int], None]
+) -> list[Mutant]:
+    """Test every mutant; return those that no test noticed. ``told``: of (done, survivors)."""
+    waiting, running, survivors = list(reversed(found)), dict[int, Mutant](), list[Mutant]()
+    while waiting or running:
+        while waiting and len(running) < jobs:
+            mutant = waiting.pop()
+            running[start(room, mutant, limit_s)] = mutant
+        pid, status = os.wait()
+        mutant = running.pop(pid)
+        if status == 0:
+            survivors.append(mutant)
+        told(len(found) - len(waiting) - len(running), len(survivors))
+    return sorted(survivors, key=lambda mutant: (mutant.file, mutant.line))
+
+
+def baseline(room: Room) -> float | None:
+    """Return how long the tests of a room take [s] when nothing is changed; None: they fail."""
+    begin = time.monotonic()
+    _, status = os.waitpid(start(room, None, 600), 0)
+    return time.monotonic() - begin if status == 0 else None
