@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import atan, inf, isnan, nan, tan
+from math import atan, copysign, inf, isnan, nan, tan
 from typing import Any
 
 import pytest
@@ -56,7 +56,7 @@ def test_large_numbers_are_finite_though_their_sum_is_not() -> None:
 
 @pytest.mark.parametrize(
     ("age", "stale"),
-    [(0.0, False), (0.5, False), (0.5000001, True), (-0.0009, False), (-0.0011, True)],
+    [(0.0, False), (0.5, False), (0.5000001, True), (-0.001, False), (-0.0011, True)],
 )
 def test_freshness(age: float, stale: bool) -> None:
     proposal = COMMAND._replace(now=0.0, stamp=-age)
@@ -155,6 +155,17 @@ def test_lateral_acceleration(sign: float, speed: float) -> None:
     decided(stream.send(sign * 0.9), Verdict.PASSED)  # at rest
 
 
+def test_lateral_acceleration_counts_at_walking_speed() -> None:
+    """0.1 m/s^2 at 0.5 m/s is a curvature of 0.4 1/m; with 2.5 m of wheelbase, tan = 1."""
+    found = Stream(lateral_acceleration=0.1).send(0.9, speed=0.5)
+    assert found.steering_tire_angle == pytest.approx(atan(1.0))
+
+
+def test_a_guard_takes_it_that_the_vehicle_is_engaged() -> None:
+    guard = Guard(limited(steering_distance=0.3), WHEEL_BASE, TIMEOUT)
+    decided(guard.check(COMMAND, 3.0, 0.5), Verdict.CLAMPED, Limit.STEERING_DISTANCE)
+
+
 def test_lateral_jerk() -> None:
     """5 m/s^3 for 0.1 s at 10 m/s is 0.005 1/m of curvature; tan rises by 0.0125."""
     stream = Stream(lateral_jerk=5.0)
@@ -191,7 +202,7 @@ def brake(asked: float, sent: float) -> tuple[Verdict, Limit]:
 @pytest.mark.parametrize("speed", [20.1, -20.1])
 def test_a_vehicle_that_is_too_fast_is_not_driven_further(speed: float) -> None:
     stream = Stream(velocity=20.0)
-    stream.send(acceleration=1.0, speed=20.0)
+    decided(stream.send(acceleration=1.0, speed=copysign(20.0, speed)), Verdict.PASSED)
     found = decided(stream.send(acceleration=1.0, speed=speed), Verdict.CLAMPED, Limit.VELOCITY)
     assert found.acceleration == 0.0
     decided(stream.send(acceleration=-1.0, speed=speed), Verdict.PASSED)

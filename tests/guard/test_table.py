@@ -35,6 +35,12 @@ def test_one_point_is_enough() -> None:
     assert table.at(0.0) == table.at(3.0) == table.at(99.0) == (2.0,) * 10
 
 
+@pytest.mark.parametrize("wrong", [{"jerk": (1.0,)}, {"speed_points": (0.0, 5.0, 10.0)}])
+def test_lists_of_unequal_length_make_no_table(wrong: dict[str, tuple[float, ...]]) -> None:
+    with pytest.raises(ValueError, match="zip"):
+        SpeedTable(limited(**wrong))
+
+
 def test_every_list_of_the_parameters_is_a_column() -> None:
     lists = [item.name for item in fields(GuardParams) if str(item.type).startswith("tuple")]
     assert lists == ["speed_points", *COLUMNS]
@@ -51,6 +57,8 @@ def test_every_list_of_the_parameters_is_a_column() -> None:
         (5.0, [(1, 0.0, 4.0), (2, 4.5, 6.0)], (4.5, 3)),
         (-5.0, [(1, -4.0, 0.0), (2, -6.0, -4.5)], (-4.5, 3)),
         (5.0, [(1, 0.0, 4.0), (2, 5.0, 6.0)], (5.0, 3)),
+        (5.0, [(2, 5.0, 9.0), (1, 0.0, 4.0)], (4.0, 1)),
+        (5.0, [(2, 0.0, 5.0), (1, 6.0, 9.0)], (6.0, 1)),
     ],
 )
 def test_confine(value: float, bounds: list[tuple[int, float, float]], expected: object) -> None:
