@@ -8,6 +8,8 @@ from safety_island.dds import topics
 from safety_island.dds.qos import DEFAULT, INPUT_DEPTH, LATCHED
 from safety_island.dds.topics import ARM, BRIDGED, EVERY_TICK, INPUTS, OUTPUTS, OWN, STATUS, TOPICS
 from safety_island.messages import registry
+from safety_island.params import load_set
+from safety_island.params.schema import values_of
 
 DEBUG = "/control/trajectory_follower/{}/debug/processing_time_ms"
 CONTRACT = {
@@ -34,15 +36,16 @@ def test_five_inputs_three_outputs_six_bridged() -> None:
 
 
 def test_ages() -> None:
-    limits = {entry.key: (entry.age_limit_s, entry.age_warning_s) for entry in INPUTS}
-    fast = (0.5, 0.28)
+    values = values_of(load_set("default"))
+    limits = {entry.key: values.get(entry.age_limit) for entry in INPUTS}
     assert limits == {
-        "steering": fast,
-        "odometry": fast,
-        "acceleration": fast,
-        "trajectory": (0.9, None),
-        "operation_mode": (None, None),
+        "steering": 0.5,
+        "odometry": 0.5,
+        "acceleration": 0.5,
+        "trajectory": 0.9,
+        "operation_mode": None,
     }
+    assert values["gate.age_warning"] == 0.28
 
 
 def test_states_that_are_sent_on_change_are_latched() -> None:

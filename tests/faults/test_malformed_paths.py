@@ -205,7 +205,6 @@ def test_row_31_a_stop_in_mid_path_is_not_passed() -> None:
     assert 28.0 < planner.place.station - place < 32.0
 
 
-@pytest.mark.xfail(reason="the sign of the path's speed is not compared with the motion")
 def test_row_31_a_reverse_demand_does_not_speed_up_forward_motion() -> None:
     """Gear and motion say forward, the path says backward: brake first."""
     scene = Scene().drive()

@@ -268,3 +268,22 @@ def test_limits_are_those_of_the_measured_speed() -> None:
     guard = Guard(limited(steering_angle=(1.0, 0.5)), WHEEL_BASE, TIMEOUT)
     proposal = Proposal(1.0, 1.0, 1, 1.0, 0.0, 0.0, 0.0)
     assert guard.check(proposal, -5.0, 0.0).steering_tire_angle == 0.75
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+@pytest.mark.parametrize(("asked", "sent"), [(1.0, 0.0), (-1.0, -1.0)])
+def test_a_vehicle_that_rolls_the_other_way_may_only_slow_down(
+    way: float, asked: float, sent: float
+) -> None:
+    stream = Stream()
+    found = stream.send(velocity=-2.0 * way, acceleration=asked, speed=0.51 * way)
+    assert found.acceleration == sent
+    assert found.limits == (Limit.VELOCITY if asked > 0.0 else 0)
+
+
+@pytest.mark.parametrize(("velocity", "speed"), [(-2.0, 0.5), (2.0, 5.0), (-2.0, -5.0), (0.0, 5.0)])
+def test_a_vehicle_may_start_the_other_way_and_go_on_in_its_own(
+    velocity: float, speed: float
+) -> None:
+    decision = Stream().send(velocity=velocity, acceleration=1.0, speed=speed)
+    assert decision.verdict is Verdict.PASSED and decision.acceleration == 1.0

@@ -9,6 +9,8 @@ from pathlib import Path
 from safety_island.dds.names import dds_topic_name
 from safety_island.dds.topics import OWN, TOPICS, TopicEntry
 from safety_island.messages.registry import dds_type_name
+from safety_island.params import load_set
+from safety_island.params.schema import values_of
 
 PAGE = "docs/topics.md"
 
@@ -23,7 +25,9 @@ The island talks plain DDS and appears in `ros2 node list` as a node. On the wir
 `pkg::msg::dds_::Name_`, and a message is plain CDR (XCDR1, little endian).
 
 All endpoints are reliable. The island takes the newest sample of each input at each tick and counts
-what it passes over. The rates of the inputs are those of Autoware's planning simulator.
+what it passes over. The rates of the inputs are those of Autoware's planning simulator. An input
+that is older than its limit ends the output; the limits are the parameters `gate.age_limit`, here
+with their default values. The operation mode has none: its publisher must live.
 """
 
 OWN_TOPICS = """\
@@ -51,7 +55,7 @@ def render() -> str:
 
 
 def _table(entries: Sequence[TopicEntry]) -> str:
-    head = ["direction", "topic and type", "durability", "rate", "bridged (domains)"]
+    head = ["direction", "topic and type", "durability", "rate", "age limit", "bridged (domains)"]
     rows = [head, ["---"] * len(head), *(_row(entry) for entry in entries)]
     return "\n".join(f"| {' | '.join(row)} |" for row in rows)
 
@@ -62,8 +66,14 @@ def _row(entry: TopicEntry) -> list[str]:
         f"`{entry.name}`<br>`{entry.type_name}`",
         entry.qos.durability.replace("_", " "),
         _rate(entry.rate_hz),
+        _age(entry.age_limit),
         "no" if entry.bridged is None else f"{entry.bridged[0]} → {entry.bridged[1]}",
     ]
+
+
+def _age(parameter: str) -> str:
+    """The default value; the parameter is named after the input."""
+    return f"{values_of(load_set('default'))[parameter]:g} s" if parameter else "none"
 
 
 def _rate(rate_hz: float | None) -> str:

@@ -23,8 +23,8 @@ class TopicEntry:
     """One topic of the island.
 
     ``key`` is its short name in code and reports; ``rate_hz`` [Hz] is the expected rate, None when
-    it is sent on change, 0 for once a tick; ``age_limit_s`` and ``age_warning_s`` [s] bound the
-    time since the last receipt, None for no bound; ``bridged`` is (from domain, to domain).
+    it is sent on change, 0 for once a tick; ``age_limit`` is the parameter that bounds its age,
+    empty for no bound; ``bridged`` is (from domain, to domain).
     """
 
     key: str
@@ -33,8 +33,7 @@ class TopicEntry:
     direction: Direction
     qos: Qos
     rate_hz: float | None
-    age_limit_s: float | None = None
-    age_warning_s: float | None = None
+    age_limit: str = ""
     bridged: tuple[int, int] | None = None
 
     @property
@@ -47,8 +46,6 @@ EVERY_TICK = 0.0
 _INWARD = (MAIN_COMPUTE_DOMAIN, SAFETY_ISLAND_DOMAIN)
 _OUTWARD = (SAFETY_ISLAND_DOMAIN, MAIN_COMPUTE_DOMAIN)
 _FAST_RATE = 35.6
-_FAST_LIMIT = 0.5
-_FAST_WARNING = 0.28
 
 STEERING = TopicEntry(
     "steering",
@@ -57,8 +54,7 @@ STEERING = TopicEntry(
     Direction.IN,
     DEFAULT,
     _FAST_RATE,
-    _FAST_LIMIT,
-    _FAST_WARNING,
+    "gate.age_limit.steering",
     _INWARD,
 )
 TRAJECTORY = TopicEntry(
@@ -68,8 +64,7 @@ TRAJECTORY = TopicEntry(
     Direction.IN,
     DEFAULT,
     7.4,
-    0.9,
-    None,
+    "gate.age_limit.trajectory",
     _INWARD,
 )
 ODOMETRY = TopicEntry(
@@ -79,8 +74,7 @@ ODOMETRY = TopicEntry(
     Direction.IN,
     DEFAULT,
     _FAST_RATE,
-    _FAST_LIMIT,
-    _FAST_WARNING,
+    "gate.age_limit.odometry",
     _INWARD,
 )
 ACCELERATION = TopicEntry(
@@ -90,8 +84,7 @@ ACCELERATION = TopicEntry(
     Direction.IN,
     DEFAULT,
     _FAST_RATE,
-    _FAST_LIMIT,
-    _FAST_WARNING,
+    "gate.age_limit.acceleration",
     _INWARD,
 )
 OPERATION_MODE = TopicEntry(

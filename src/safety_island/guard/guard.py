@@ -13,6 +13,9 @@ from safety_island.guard.table import Limits, SpeedTable
 FUTURE_TOLERANCE_S = 1e-3
 """A stamp may lie that far in the future: it comes from the same clock, by way of rounding."""
 
+ROLLING = 0.5
+"""Speed [m/s] above which the direction of driving cannot be changed."""
+
 STANDSTILL = 1e-9
 """Square of the speed [m^2/s^2] below which any curvature is no lateral acceleration."""
 
@@ -57,6 +60,7 @@ class Guard:
         if refusal:
             return Decision(_REFUSED, refusal, nan, nan, nan, nan)
         now, _, self._sequence, asked_angle, asked_rotation, asked_velocity, asked_push = proposal
+        turns_round = speed * asked_velocity < 0.0 and abs(speed) > ROLLING
         speed = abs(speed)
         limits, step = self._table.at(speed), self._step(now)
         distance = limits[3] if engaged else inf
@@ -65,8 +69,10 @@ class Guard:
         rotation, turned = within(asked_rotation, limits[2], _ROTATION_RATE)
         if bits:
             rotation *= share(asked_angle, angle, steering)
-        velocity, driven = within(asked_velocity, self._fastest, _VELOCITY)
-        push, pushed = confine(asked_push, self._accelerations(limits, speed, step))
+        fastest = self._fastest
+        velocity, driven = within(asked_velocity, fastest, _VELOCITY)
+        may_drive = speed <= fastest and not turns_round
+        push, pushed = confine(asked_push, self._accelerations(limits, may_drive, step))
         self._sent = now, angle, tan(angle), push
         bits |= turned | driven | pushed
         return Decision(_CLAMPED if bits else _PASSED, bits, angle, rotation, velocity, push)
@@ -122,9 +128,11 @@ class Guard:
         smooth = (_LATERAL_JERK, atan(slope - rise), atan(slope + rise))
         return near, level, smooth, (_RATE, before - turn, before + turn), possible
 
-    def _accelerations(self, limits: Limits, speed: float, step: float) -> list[Bound]:
+    def _accelerations(self, limits: Limits, may_drive: bool, step: float) -> list[Bound]:
         """Return what the acceleration must keep, the weakest first.
 
+        A vehicle above the largest speed, or told to go the other way than it rolls, may only slow
+        down: until it stands, one that speeds up "backward" would speed up forward.
         Drive may always be dropped at once: the limit of change never lifts a command above zero
         that asks for none, so no clamp makes driving out of braking.
         """
@@ -133,6 +141,6 @@ class Guard:
         if self._sent is not None:
             before = self._sent[3]
             bounds.insert(0, (_JERK, min(before - fall * step, 0.0), before + rise * step))
-        if speed > self._fastest:
+        if not may_drive:
             bounds.append((_VELOCITY, -inf, 0.0))
         return bounds

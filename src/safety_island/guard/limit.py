@@ -64,7 +64,8 @@ EXPLANATIONS: dict[Limit, tuple[str, str]] = {
     Limit.ACCELERATION: ("it drives off or brakes too hard", _PEDALS),
     Limit.JERK: ("the acceleration changes too fast from command to command", _PEDALS),
     Limit.VELOCITY: (
-        "the speed that is asked for, or the vehicle's own, is above the limit",
+        "the speed that is asked for, or the vehicle's own, is above the limit, or the vehicle"
+        " rolls the other way",
         "look at the trajectory's speeds",
     ),
     Limit.NOT_FINITE: (
