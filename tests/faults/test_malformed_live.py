@@ -28,7 +28,7 @@ from tests.dds.conftest import NewParticipant
 from tests.dds.waiting import wait_for
 
 pytestmark = pytest.mark.live
-AGED = tuple(entry for entry in topics.INPUTS if entry.age_limit_s is not None)
+AGED = tuple(entry for entry in topics.INPUTS if entry.age_limit)
 EACH = pytest.mark.parametrize("entry", AGED, ids=lambda entry: entry.key)
 PERIOD_NS = 150_000_000
 SHORT_S = 0.03
