@@ -4,29 +4,23 @@ from __future__ import annotations
 
 import gc
 import os
-from importlib.resources import as_file, files
 
 import numpy as np
 import pytest
 
 from safety_island.bench import tick, yardstick
+from safety_island.bench.node_tick import RUN, benchmark_run
 from safety_island.bench.tick import TickTimes, measure, quiet
 from safety_island.control.follower import TrajectoryFollower
-from safety_island.replay.recording import Recording, load
+from safety_island.replay.recording import load
 from tests.golden.harness import DATA
 
 pytest.importorskip("osqp")
 
 
-def bench_run() -> Recording:
-    """The run that is shipped with the bench."""
-    with as_file(files("safety_island.bench") / "data" / tick._RUN) as path:
-        return load(path)
-
-
 def test_the_run_is_the_benchmark_run() -> None:
     """A new trajectory of 220 points before every tick, 300 ticks, horizon 50."""
-    run, golden = bench_run(), load(DATA / "bench" / tick._RUN)
+    run, golden = benchmark_run(), load(DATA / "bench" / RUN)
     assert run.ticks == 300
     assert all(run.has_new_trajectory(k) for k in range(run.ticks))
     assert {len(run.trajectory(k)) for k in range(run.ticks)} == {220}
@@ -38,7 +32,7 @@ def test_the_run_is_the_benchmark_run() -> None:
 @pytest.mark.parametrize("solver", ["unconstraint_fast", "daqp"])
 def test_every_measured_tick_is_a_whole_one(solver: str) -> None:
     """All inputs taken, a command each time: else the time would say little."""
-    bench = tick._Tick(bench_run(), solver)
+    bench = tick._Tick(benchmark_run(), solver)
     assert bench.parameters.lateral.qp_solver_type == solver
     assert bench.parameters.lateral.mpc_prediction_horizon == 50
     follower = TrajectoryFollower(bench.parameters)
@@ -58,6 +52,7 @@ def test_a_measurement() -> None:
     assert isinstance(times, TickTimes)
     assert (times.solver, times.ticks, told) == ("daqp", 300, [0, 1, 2])
     assert 0.0 < times.median_us <= times.p99_us <= times.max_us
+    assert times.node_median_us > times.median_us
     assert times.ratio == times.median_us / times.yardstick_us
     assert set(times.as_dict()) >= {"median_us", "p99_us", "max_us", "yardstick_us", "ratio"}
 

@@ -26,10 +26,20 @@ def test_json_has_the_keys_that_scripts_read(capsys: Capture) -> None:
 
 def test_one_solver_for_a_person(capsys: Capture) -> None:
     assert main(["bench", "tick", "--rounds", "1", "--solver", "daqp"]) == 0
-    head, row, foot = capsys.readouterr().out.splitlines()
-    assert head.split() == ["solver", "median", "p99", "max", "yardstick", "ratio"]
+    head, row, foot, whole = capsys.readouterr().out.splitlines()
+    assert head.split() == ["solver", "median", "p99", "max", "yardstick", "ratio", "whole", "node"]
     assert row.split()[0] == "daqp" and row.count(" us") == 4
-    assert "C++" in foot
+    assert "C++" in foot and "gate" in whole
+
+
+def test_virtual_time(capsys: Capture) -> None:
+    assert main(["bench", "virtual", "--rounds", "1", "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["real_time_factor"] == pytest.approx(told["period_s"] * 1e6 / told["tick_us"])
+    assert (told["ticks"], told["period_s"]) == (300, 0.15)
+    assert 0.0 < told["tick_us"] <= told["p99_us"] <= told["max_us"]
+    assert main(["bench", "virtual", "--rounds", "1"]) == 0
+    assert "times real time at 150 ms" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(
@@ -41,6 +51,7 @@ def test_one_solver_for_a_person(capsys: Capture) -> None:
         (["bench", "tick", "--rounds", "two"], "'two'"),
         (["bench", "tick", "--rounds", "\u0661"], "is not a number of rounds"),
         (["bench", "tick", "--solver", "osqp"], "osqp"),
+        (["bench", "virtual", "--solver", "osqp"], "osqp"),
     ],
 )
 def test_what_it_does_not_take(words: list[str], told: str, capsys: Capture) -> None:

@@ -7,7 +7,6 @@ import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
-from importlib.resources import as_file, files
 from time import perf_counter_ns
 
 import numpy as np
@@ -15,11 +14,11 @@ import numpy.typing as npt
 
 from safety_island import params
 from safety_island.bench import yardstick
+from safety_island.bench.node_tick import benchmark_run, node_round
 from safety_island.control.follower import TrajectoryFollower
 from safety_island.control.records import Records
-from safety_island.replay.recording import Recording, load
+from safety_island.replay.recording import Recording
 
-_RUN = "ctrl0.15_unconstraint_fast.npz"
 _WARM_UP_ROUNDS = 2
 _YARDSTICKS_A_ROUND = 20
 _ODOMETRY = ("x", "y", "z", "qx", "qy", "qz", "qw", "vx", "vy", "wz")
@@ -27,7 +26,10 @@ _ODOMETRY = ("x", "y", "z", "qx", "qy", "qz", "qw", "vx", "vy", "wz")
 
 @dataclass(frozen=True)
 class TickTimes:
-    """Times of a tick [us], and their ratio to the yardstick measured between the rounds."""
+    """Times of a tick [us], and their ratio to the yardstick measured between the rounds.
+
+    ``node_...`` is the whole node around it: bytes, gate, life cycle, guard, status.
+    """
 
     solver: str
     ticks: int
@@ -36,6 +38,8 @@ class TickTimes:
     max_us: float
     yardstick_us: float
     ratio: float
+    node_median_us: float
+    node_ratio: float
 
     def as_dict(self) -> dict[str, object]:
         """For JSON."""
@@ -102,23 +106,26 @@ def measure(
     Raises ConfigurationError when osqp, which the yardstick needs, is not installed.
     """
     problem = yardstick.problem()
-    with as_file(files(__package__) / "data" / _RUN) as path:
-        tick = _Tick(load(path), solver)
+    run = benchmark_run()
+    tick = _Tick(run, solver)
     times: list[npt.NDArray[np.float64]] = []
+    node: list[float] = []
     yards: list[float] = []
     with quiet():
         for index in range(_WARM_UP_ROUNDS + rounds):
             measured = tick.round()
             solved = [yardstick.measure_us(problem) for _ in range(_YARDSTICKS_A_ROUND)]
+            whole = node_round(run, solver)
             if index >= _WARM_UP_ROUNDS:
                 times.append(measured)
                 yards += solved
+                node += whole
             if report is not None:
                 report(index)
-    return _summary(solver, np.concatenate(times), float(np.median(yards)))
+    return _summary(solver, np.concatenate(times), float(np.median(yards)), float(np.median(node)))
 
 
-def _summary(solver: str, times: npt.NDArray[np.float64], yard: float) -> TickTimes:
+def _summary(solver: str, times: npt.NDArray[np.float64], yard: float, node_us: float) -> TickTimes:
     median = float(np.median(times))
     return TickTimes(
         solver=solver,
@@ -128,4 +135,6 @@ def _summary(solver: str, times: npt.NDArray[np.float64], yard: float) -> TickTi
         max_us=float(times.max()),
         yardstick_us=yard,
         ratio=median / yard,
+        node_median_us=node_us,
+        node_ratio=node_us / yard,
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from struct import Struct, error
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -58,10 +58,24 @@ def decode_trajectory(data: bytes, out: Points | None = None) -> Trajectory:
     points = out[: found.size]
     if found.size:
         size = found.size * POINT.itemsize - TIME_SIZE
-        memory = points.data.cast("B")
+        memory = _memory_of(out)
         memory[:size] = data[found.start : found.start + size]
-        memory[size:] = _NO_TIME
+        memory[size : size + TIME_SIZE] = _NO_TIME
     return Trajectory(found.stamp, found.frame_id, points, found.first_time)
+
+
+_known: list[tuple[Points, memoryview[Any]]] = []
+
+
+def _memory_of(out: Points) -> memoryview[Any]:
+    """Return the bytes of an array; a view costs more than a copy, so the last two are kept."""
+    for points, memory in _known:
+        if points is out:
+            return memory
+    del _known[:-1]
+    memory = out.data.cast("B")
+    _known.append((out, memory))
+    return memory
 
 
 def view_trajectory(data: bytes) -> Trajectory:

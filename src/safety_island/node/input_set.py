@@ -146,12 +146,15 @@ class InputSet:
                     self._logger.warning("%s: %s", item.name, what, throttled=True, site=site)
 
     def _warnings(self, item: Input, now: float, wall_ns: int) -> int:
+        age_s = now - item.accepted_at
+        is_old = age_s > item.age_warning_s
+        # A stamp is as old as its sample; the operation mode was stamped when it changed.
+        is_off = abs(wall_ns - item.stamp_ns) > self._warning_clock_ns + age_s * 1e9
+        is_off = is_off and item is not self._mode
+        if not (is_old or is_off or item.is_suspect or now <= self._unsettled_until):
+            return 0  # the usual case
         if item.message is None:
             return 0
-        is_old = now - item.accepted_at > item.age_warning_s
-        is_off = item is not self._mode and (
-            abs(wall_ns - item.stamp_ns) > self._warning_clock_ns + (now - item.accepted_at) * 1e9
-        )
         return warnings(now, item.stamps, item.writers, item.rate, is_old, is_off)
 
     @property

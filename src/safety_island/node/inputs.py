@@ -218,9 +218,10 @@ class Input:
         self.subscription.take_all()
         self.accepted_at = -math.inf
 
-    def age_s(self, now: float) -> float:
-        """Age of the sample in force [s]; infinite when there is none."""
-        return now - self.accepted_at
+    @property
+    def is_suspect(self) -> bool:
+        """Whether rate, delay or publishers may be worth a warning."""
+        return self.rate.too_low or self.stamps.delay_s > 0.0 or self.writers.others > 0
 
     def _accept(self, sample: Sample, now: float) -> bool:
         data = sample.data

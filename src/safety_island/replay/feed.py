@@ -57,6 +57,10 @@ class Replay:
 
     def tick(self, tick: int) -> Records | None:
         """Deliver the messages of one row and do the tick; the command, when one was published."""
+        return self.follower.command if self.node.tick(self.deliver(tick)).published else None
+
+    def deliver(self, tick: int) -> float:
+        """Move the clock to a row and deliver its messages; return its time [s]."""
         now = float(self.run.state["t"][tick])
         self.platform.clock.advance_to_ns(round(now * 1e9))
         if self.run.has_new_trajectory(tick):
@@ -64,7 +68,7 @@ class Replay:
             points = self.run.trajectory(tick)
             self._write["trajectory"](encode_trajectory(stamp, "map", points))
         self._play(tick, Time.from_seconds(now))
-        return self.follower.command if self.node.tick(now).published else None
+        return now
 
     def _play(self, tick: int, stamp: Time) -> None:
         row = {name: float(column[tick]) for name, column in self.run.state.items()}

@@ -1,0 +1,58 @@
+"""``island bench virtual``: how many times real time the whole island runs in virtual time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+
+import numpy as np
+
+from safety_island import params
+from safety_island.bench.node_tick import benchmark_run, node_round
+from safety_island.bench.tick import quiet
+
+_WARM_UP_ROUNDS = 2
+
+
+@dataclass(frozen=True)
+class VirtualTimes:
+    """Real-time factor (median over the ticks), and the time of one tick of the node [us]."""
+
+    real_time_factor: float
+    tick_us: float
+    p99_us: float
+    max_us: float
+    ticks: int
+    period_s: float
+
+    def as_dict(self) -> dict[str, object]:
+        """For JSON."""
+        return asdict(self)
+
+
+def measure(
+    rounds: int = 10, solver: str = "daqp", report: Callable[[int], None] | None = None
+) -> VirtualTimes:
+    """Run the benchmark run ``rounds`` times after warm-up; ``report`` is told each round.
+
+    What a tick is: see ``node_round``.
+    """
+    run = benchmark_run()
+    period_s = params.from_mapping(run.overrides, "firmware").node.ctrl_period
+    times: list[float] = []
+    with quiet():
+        for index in range(_WARM_UP_ROUNDS + rounds):
+            measured = node_round(run, solver)
+            if index >= _WARM_UP_ROUNDS:
+                times += measured
+            if report is not None:
+                report(index)
+    median = float(np.median(times))
+    return VirtualTimes(
+        real_time_factor=period_s * 1e6 / median,
+        tick_us=median,
+        p99_us=float(np.percentile(times, 99)),
+        max_us=max(times),
+        ticks=len(times),
+        period_s=period_s,
+    )
