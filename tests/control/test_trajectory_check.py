@@ -74,7 +74,7 @@ def test_points_may_meet_again_later(gate: TrajectoryFollower, turned: float) ->
     assert gate.offer_trajectory(loop, 1000.0) is Refusal.ACCEPTED
 
 
-@pytest.mark.parametrize(("back", "wanted"), [(0.5, "ACCEPTED"), (0.5000001, "MIXED_DIRECTION")])
+@pytest.mark.parametrize(("back", "wanted"), [(0.0499, "ACCEPTED"), (0.0501, "MIXED_DIRECTION")])
 @pytest.mark.parametrize("yaw", [0.0, math.pi])
 def test_a_way_there_and_back_is_no_trajectory(
     gate: TrajectoryFollower, back: float, wanted: str, yaw: float

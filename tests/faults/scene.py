@@ -104,7 +104,7 @@ class Scene:
         self.remote_clock.set_wall_offset_ns(EPOCH_NS + skew_ns)
         self.domain = domain(self.clock)
         wires = Wires(self.clock, self.domain)
-        self.world = World(load_course(course), self.now, repeat=True)
+        self.world = World(load_course(course), self.now, repeat=True, leave=False)
         self.world.plant.speed = start_speed
         self.main_compute = MainCompute(self.world, wires, self.remote_clock)
         self.wires = {key: wires.by_topic[topics.topic(key).name] for key in INPUTS}

@@ -91,7 +91,8 @@ def told_honestly(proposal: Proposal, found: Decision) -> None:
     assert found.steering_tire_rotation_rate * proposal.steering_tire_rotation_rate >= 0.0
 
 
-@given(st.floats(-30.0, 30.0), st.floats(-1e3, 1e3), st.floats(-1e3, 1e3), st.floats(-3.0, 3.0))
+# A measured angle beyond the largest one would leave no angle that is near it and allowed.
+@given(st.floats(-30.0, 30.0), st.floats(-1e3, 1e3), st.floats(-1e3, 1e3), st.floats(-0.7, 0.7))
 def test_what_was_let_through_passes_again(
     speed: float, angle: float, push: float, steering: float
 ) -> None:

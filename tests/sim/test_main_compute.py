@@ -127,6 +127,7 @@ def test_engages_drives_brakes_and_goes_on(neighbour: Neighbour) -> None:
     assert neighbour.said == [
         "commands come: autonomous mode engaged",
         "commands stopped coming: braking",
+        "commands come: autonomous mode engaged",
         "commands are back",
     ]
     kind, summary = neighbour.events[-1]

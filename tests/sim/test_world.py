@@ -83,7 +83,11 @@ def test_brakes_in_silence_and_says_so(world: World, said: list[str]) -> None:
     assert world.plant.speed == 0.0
     assert world.plant.steering == pytest.approx(0.1, abs=1e-3)
     _run(world, now, 1.0, lambda: (0.0, 1.0))
-    assert said[1:] == ["commands stopped coming: braking", "commands are back"]
+    assert said[1:] == [
+        "commands stopped coming: braking",
+        "commands come: autonomous mode engaged",
+        "commands are back",
+    ]
     assert world.plant.speed > 0.0
     assert world.summary()["silences"] == 1
 

@@ -22,7 +22,7 @@ MIN_SQUARE_NORM = 0.99**2
 MAX_SQUARE_NORM = 1.01**2
 """The norm of an orientation may be 1 % off."""
 
-MAX_BACKTRACK = 0.5
+MAX_BACKTRACK = 0.05
 """Length [m] that a trajectory may lead against the direction of the rest of it."""
 STANDSTILL = 1e-3
 """Speed [m/s] below which a point has no direction."""

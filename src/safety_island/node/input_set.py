@@ -69,12 +69,10 @@ class InputSet:
     def discover(self, now: float) -> None:
         """Look which publishers live; to be called when some came or went."""
         for item, spec in zip(self.items, INPUTS, strict=True):
-            others, owner = item.writers.others, item.writers.owner
+            others = item.writers.others
             item.writers.update(self._transport.writers(item.topic, spec.topic.type_name), now)
             if item.writers.others > others:
                 self._logger.warning("%s has %d publishers", item.topic, item.writers.others + 1)
-            if owner and not item.writers.owner:
-                item.stamps.forget()  # the next one may have another clock
         self._unsettled_until = now + WINDOW_S
         if not self._mode.writers.owner:
             self._mode.hand_over(now)  # what is sent on change is not sent again

@@ -29,7 +29,8 @@ class World:
     """Plant, gate, planner and metrics in step with a clock; times in s, monotonic.
 
     Drives ``laps`` laps, or with ``repeat`` laps without end.
-    Starts in STOP mode and engages AUTONOMOUS, when ``engage`` is on, as soon as commands come.
+    Starts in STOP mode and engages AUTONOMOUS, when ``engage`` is on, as soon as commands come;
+    leaves it again, when ``leave`` is on, when they stop coming.
     """
 
     def __init__(
@@ -40,6 +41,7 @@ class World:
         repeat: bool = False,
         laps: int = 1,
         engage: bool = True,
+        leave: bool = True,
         say: Callable[[str], None] = lambda _: None,
     ) -> None:
         self.course, self.gate = course, CommandGate()
@@ -49,7 +51,7 @@ class World:
         self.metrics = Metrics(stop_errors=self.planner.stop_errors)
         self.mode = Mode.STOP
         self.stood_still_s = 0.0
-        self._engage, self._say = engage, say
+        self._engage, self._leave, self._say = engage, leave, say
         self._last_lap = None if repeat else laps - 1
         self._time = start
         self._finished_at: float | None = None
@@ -97,8 +99,9 @@ class World:
         if self.gate.state is before:
             return
         if self.gate.state is GateState.BRAKING:
-            self._say("commands stopped coming: braking, and autonomous mode is left")
-            self.mode, self.gate.engaged = Mode.STOP, False
+            self._say("commands stopped coming: braking")
+            if self._leave:
+                self.mode, self.gate.engaged = Mode.STOP, False
         elif before is GateState.BRAKING:
             self._say("commands are back")
 

@@ -66,7 +66,7 @@ def test_what_is_wrong() -> None:
         "warning: clock",
         "4 failures",
         "island not armed, asked to arm: refused",
-        "PASSED (bit 0)",
+        "PASSED (ANGLE)",
         "3 late in a row",
     ):
         assert part in text
