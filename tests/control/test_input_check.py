@@ -80,8 +80,10 @@ def test_the_bounds_of_a_point(gate: TrajectoryFollower, field: str) -> None:
     beyond = np.nextafter(POINT[field].type(BOUNDS[field]), POINT[field].type(np.inf))
     for sign in (1.0, -1.0):
         assert offered(gate, 20, **{field: sign * beyond}) is Refusal.OUT_OF_RANGE
-        at_bound = offered(gate, 39, **{field: sign * BOUNDS[field]})
-        assert at_bound is (Refusal.TOO_LONG if field in ("x", "y") else Refusal.ACCEPTED)
+        wanted = Refusal.TOO_LONG if field in ("x", "y") else Refusal.ACCEPTED
+        if field == "v" and sign < 0.0:  # the other points lead forward
+            wanted = Refusal.MIXED_DIRECTION
+        assert offered(gate, 39, **{field: sign * BOUNDS[field]}) is wanted
 
 
 @pytest.mark.parametrize("field", POINT_FIELDS)
