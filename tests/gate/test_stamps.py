@@ -147,6 +147,13 @@ class TestOlder:
                 assert offer(gate, 49.95 + 0.125 * tick, now) is OLDER
         assert gate.steps_back == 1
 
+    def test_what_was_set_back_once_is_not_set_back_again_in_the_same_tick(
+        self, gate: StampGate
+    ) -> None:
+        found = [offer(gate, 50.0 + 0.25 * i, 1000.125 + 0.25 * i) for i in range(2)]
+        assert found == [OLDER, None]
+        assert offer(gate, 50.125, 1000.375) is OLDER
+
     def test_without_an_age_limit_the_order_of_arrival_counts(self) -> None:
         """What is sent on change is not told again: a STOP with an older stamp must not be lost."""
         gate = StampGate()

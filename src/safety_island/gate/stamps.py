@@ -87,7 +87,7 @@ class StampGate:
         """Take the sample that was judged last."""
         self._held, self._held_ns, self._held_at = data, self.stamp_ns, now
         self.delay_s = self._new_delay_s
-        self._older_ns = -1
+        self._older_ns, self._older_at = -1, -math.inf
 
 
 _AFTER_STAMP = 12
