@@ -35,7 +35,7 @@ def test_one_point_is_enough() -> None:
     assert table.at(0.0) == table.at(3.0) == table.at(99.0) == (2.0,) * 10
 
 
-@pytest.mark.parametrize("wrong", [{"jerk": (1.0,)}, {"speed_points": (0.0, 5.0, 10.0)}])
+@pytest.mark.parametrize("wrong", [{"jerk": (1.0, 2.0, 3.0)}, {"speed_points": (0.0, 5.0, 10.0)}])
 def test_lists_of_unequal_length_make_no_table(wrong: dict[str, tuple[float, ...]]) -> None:
     with pytest.raises(ValueError, match="zip"):
         SpeedTable(limited(**wrong))

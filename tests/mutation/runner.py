@@ -132,9 +132,15 @@ def start(room: Room, mutant: Mutant | None, limit_s: int) -> int:
             finder: Any = _Mutated(ROOT / mutant.file, mutant.tree)
             sys.meta_path.insert(0, finder)
         _forget_rooms()
-        status = _first_failure(room.test_paths())
+        status = _first_failure(_likeliest_first(room, mutant))
     finally:
         os._exit(status)
+
+
+def _likeliest_first(room: Room, mutant: Mutant | None) -> list[str]:
+    """Units and ranges of parameters are held by their page, which is the last of the tests."""
+    paths = room.test_paths()
+    return paths[::-1] if mutant and mutant.file.endswith("params.py") else paths
 
 
 def _first_failure(paths: Sequence[str]) -> int:
