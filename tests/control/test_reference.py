@@ -85,7 +85,9 @@ def natural_spline(arc: Values, values: Values, s: Values) -> Values:
 @pytest.mark.parametrize("seed", range(3))
 def test_positions_lie_on_the_natural_cubic_splines_over_the_plane_arc_length(seed: int) -> None:
     rng = np.random.default_rng(seed)
-    points = make_points(np.cumsum(rng.uniform(0.05, 2.0, 60)), np.cumsum(rng.normal(0, 0.3, 60)))
+    points = make_points(
+        np.cumsum(rng.uniform(0.05, 2.0, 60)), np.cumsum(rng.normal(0, 0.3, 60)), yaw=0.0
+    )
     points["z"] = np.cumsum(rng.normal(0, 0.2, 60))
     rig = on_path(points)
     rig.place(*(float(points[name][20]) + 0.3 for name in ("x", "y")))

@@ -19,7 +19,7 @@ from tests.control.lateral_rig import (
 
 def test_smoothing_is_the_mean_over_a_window_that_shrinks_at_the_ends() -> None:
     x = np.arange(0.0, 30.0, 0.5)
-    zigzag = make_points(x, np.where(np.arange(60) % 4 < 2, 0.0, 0.1), v=np.sin(x), yaw=0.0)
+    zigzag = make_points(x, np.where(np.arange(60) % 4 < 2, 0.0, 0.1), v=2.0 + np.sin(x), yaw=0.0)
     plain = on_path(zigzag)
     smooth = on_path(zigzag, enable_path_smoothing=True, path_filter_moving_ave_num=10)
     for rig in (plain, smooth):

@@ -176,9 +176,9 @@ class ControllerNode(Node):
         """Return what forbids to send, before the controllers are asked."""
         for name in () if self.inputs.are_complete else self.inputs.missing():
             self.logger.info("Waiting for %s data", name, throttled=True, site=f"input {name}")
-        if reason := self.identity.blocked(now):
-            return Blocked(reason)
-        return self.inputs.blocked(now)
+        reason, blocked = self.identity.blocked(now), self.inputs.blocked(now)
+        waits = reason is Reason.DISCOVERING and blocked.reason is Reason.WAITING_FOR_INPUT
+        return Blocked(reason) if reason and not waits else blocked
 
     def _control(self, blocked: Blocked, now: float, start_ns: int) -> tuple[Outcome, str]:
         """From inputs that are taken to a command that is sent."""
