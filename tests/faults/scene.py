@@ -136,7 +136,7 @@ class Scene:
         can = CanOutput(
             mode, link, self.period_s / 10, self.clock.monotonic_ns, self.platform.logger
         )
-        self.node.outputs = (can,) if only else (*self.node.outputs, can)
+        self.node.sender.outputs = (can,) if only else (*self.node.sender.outputs, can)
         self._drives_by_can = only
 
     @property

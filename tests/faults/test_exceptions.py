@@ -27,7 +27,7 @@ PLACES: dict[str, Callable[[Scene], tuple[Any, str]]] = {
     "check": lambda scene: (scene.node, "_check"),
     "life_cycle.judge": lambda scene: (scene.node.life_cycle, "judge"),
     "life_cycle.overrun": lambda scene: (scene.node.life_cycle.overrun, "tick"),
-    "processing time": lambda scene: (scene.node._times[0], "send"),
+    "processing time": lambda scene: (scene.node._lateral_time, "send"),
     "send": lambda scene: (scene.node, "_send"),
 }
 

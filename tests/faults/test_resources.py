@@ -92,7 +92,7 @@ def test_row_50_an_output_without_descriptors_stops_no_other(
 ) -> None:
     """DDS_AND_CAN: the topic fails, the frames go on."""
     scene = Scene().drive()
-    topic: Any = scene.node.outputs[0]
+    topic: Any = scene.node.sender.outputs[0]
     monkeypatch.setattr(topic._publisher, "write", fail_with(OSError(24, "Too many open files")))
     rows = scene.run(3.0)
     assert {(row.state, row.output) for row in rows} == {(State.ACTIVE, "published")}
@@ -106,7 +106,7 @@ def test_row_50_without_any_output_it_is_silent(
 ) -> None:
     scene = Scene(period_s).drive()
     with monkeypatch.context() as patch:
-        for output in scene.node.outputs:
+        for output in scene.node.sender.outputs:
             patch.setattr(output, "send", fail_with(OSError(24, "Too many open files")))
         rows = scene.run(5 * period_s)
         ticks = scene.parameters.life_cycle.fault_ticks
@@ -119,6 +119,6 @@ def test_row_50_without_any_output_it_is_silent(
 
 def test_row_50_a_debug_topic_is_not_needed(monkeypatch: pytest.MonkeyPatch) -> None:
     scene = Scene().drive()
-    for writer in scene.node._times:
+    for writer in (scene.node._lateral_time, scene.node._longitudinal_time):
         monkeypatch.setattr(writer._publisher, "write", fail_with(OSError(24, "no more")))
     stays_active(scene, 2.0)

@@ -44,7 +44,7 @@ def test_row_71_the_newcomer_goes_on_when_the_first_has_left() -> None:
     for _ in range(20):
         scene.tick()
         newcomer.tick()
-    scene.node.outputs[0]._publisher.close()  # type: ignore[attr-defined]
+    scene.node.sender.outputs[0]._publisher.close()  # type: ignore[attr-defined]
     assert scene.world.plant.speed > 1.0
     scene.idle(SLOW)
     report = newcomer.tick()

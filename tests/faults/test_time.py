@@ -124,7 +124,7 @@ def test_row_35_one_stamp_from_the_far_future_blinds_nobody(key: str, period_s: 
 def test_row_36_the_stamps_and_counters_on_can_wrap() -> None:
     """49.7 days of uptime; what a receiver accepts does not change (tests/can has the bits)."""
     scene = Scene(start_ns=DAYS_49_7_NS - 10**10)
-    can = scene.node.outputs[-1]
+    can = scene.node.sender.outputs[-1]
     can._sequence = 65_500  # type: ignore[attr-defined]
     receiver = CommandReceiver(SLOW)
     verdicts: list[object] = []

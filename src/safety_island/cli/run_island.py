@@ -69,7 +69,7 @@ def _start(run: Run, start: StopAtOnce, stack: ExitStack) -> None:
         mode=settings.mode,
         joined_at=joined_at,
     )
-    node.outputs = can.outputs(node)
+    node.sender.outputs = can.outputs(node)
     _drive(run, node, follower.trace, can, start)
 
 

@@ -15,7 +15,11 @@ from safety_island.control.params import Parameters
 from safety_island.control.records import Records, record
 
 _STATES = 4  # of the largest vehicle model
-_LONGEST = MAX_REFERENCE + 2  # the reference with its two closing duplicates
+_SKEW = 40
+"""Numbers between two long columns, five lines of a cache: columns that lie a power of two apart
+share their places in the cache, and a tick that reads twenty of them would displace its own."""
+_SOURCE = MAX_POINTS + _SKEW
+_LONGEST = MAX_REFERENCE + 2 + _SKEW  # the reference with its two closing duplicates
 
 FILTER = [
     ("u1", "f8"),  # the last two inputs and outputs
@@ -28,17 +32,17 @@ SOURCE_COLUMNS = [
     ("source_id", "i8"),  # trajectory_id of the accepted trajectory; 0: none
     ("source_n", "i8"),
     ("source_yaw_end", "f8"),  # yaw of its last point [rad]
-    ("px", "f8", (MAX_POINTS,)),  # its points [m]
-    ("py", "f8", (MAX_POINTS,)),
-    ("pz", "f8", (MAX_POINTS,)),
-    ("pyaw", "f8", (MAX_POINTS,)),  # unwrapped yaw [rad], as far as it was needed
-    ("pv", "f8", (MAX_POINTS,)),  # speed [m/s]
-    ("arc", "f8", (MAX_POINTS,)),  # 2-D arc length [m]
-    ("mx", "f8", (MAX_POINTS,)),  # second derivatives of the natural cubic splines
-    ("my", "f8", (MAX_POINTS,)),
-    ("mz", "f8", (MAX_POINTS,)),
-    ("myaw", "f8", (MAX_POINTS,)),
-    ("gain", "f8", (MAX_POINTS,)),  # elimination factors of the tridiagonal system
+    ("px", "f8", (_SOURCE,)),  # its points [m]
+    ("py", "f8", (_SOURCE,)),
+    ("pz", "f8", (_SOURCE,)),
+    ("pyaw", "f8", (_SOURCE,)),  # unwrapped yaw [rad], as far as it was needed
+    ("pv", "f8", (_SOURCE,)),  # speed [m/s]
+    ("arc", "f8", (_SOURCE,)),  # 2-D arc length [m]
+    ("mx", "f8", (_SOURCE,)),  # second derivatives of the natural cubic splines
+    ("my", "f8", (_SOURCE,)),
+    ("mz", "f8", (_SOURCE,)),
+    ("myaw", "f8", (_SOURCE,)),
+    ("gain", "f8", (_SOURCE,)),  # elimination factors of the tridiagonal system
 ]
 
 REFERENCE_COLUMNS = [

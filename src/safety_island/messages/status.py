@@ -12,7 +12,7 @@ import numpy.typing as npt
 from safety_island.messages import wire
 from safety_island.messages.description import Primitive
 from safety_island.messages.fixed import cells, packer, record_type
-from safety_island.messages.inputs import little_endian
+from safety_island.messages.framed import little_endian
 from safety_island.messages.registry import struct_of
 from safety_island.messages.status_fields import InputStatus, Status
 from safety_island.messages.wire import HEADER_LE, HEADER_SIZE, Time

@@ -9,7 +9,8 @@ import numpy as np
 
 from safety_island.messages import wire
 from safety_island.messages.errors import DecodeError, DecodeReason
-from safety_island.messages.inputs import decode_stamp, little_endian, string_prefix
+from safety_island.messages.framed import decode_stamp, little_endian
+from safety_island.messages.inputs import string_prefix
 from safety_island.messages.points import POINT, POINT_HEAD, TIME_SIZE, Points
 from safety_island.messages.strings import LeadingStrings
 from safety_island.messages.wire import HEADER_LE, Time
@@ -19,6 +20,7 @@ _U32 = Struct("<I")
 _FRAME = LeadingStrings(TRAJECTORY, 1)
 _NO_TIME = bytes(TIME_SIZE)
 _TIME = Struct("<iI")
+_POINT_SIZE = POINT.itemsize
 
 
 class Trajectory(NamedTuple):
@@ -31,13 +33,8 @@ class Trajectory(NamedTuple):
     """time_from_start of the first point; each record holds the one of the point after it."""
 
 
-class _Layout(NamedTuple):
-    stamp: Time
-    frame_id: str
-    size: int
-    first_time: Time
-    start: int
-    """Place of the first ``position.x``; meaningless without points."""
+_Layout = tuple[Time, str, int, Time, int]
+"""Stamp, frame, number of points, time of the first, and the place of its ``position.x``."""
 
 
 def decode_trajectory(data: bytes, out: Points | None = None) -> Trajectory:
@@ -49,19 +46,18 @@ def decode_trajectory(data: bytes, out: Points | None = None) -> Trajectory:
     untouched.
     """
     data = little_endian(data, TRAJECTORY)
-    found = _layout(data)
+    stamp, frame_id, count, first_time, start = _layout(data)
     if out is None:
-        out = np.empty(found.size, POINT)
-    elif found.size > len(out):
-        detail = f"{found.size} points, at most {len(out)} are taken"
+        out = np.empty(count, POINT)
+    elif count > len(out):
+        detail = f"{count} points, at most {len(out)} are taken"
         raise DecodeError(DecodeReason.LENGTH, TRAJECTORY, detail)
-    points = out[: found.size]
-    if found.size:
-        size = found.size * POINT.itemsize - TIME_SIZE
+    if count:
+        size = count * _POINT_SIZE - TIME_SIZE
         memory = _memory_of(out)
-        memory[:size] = data[found.start : found.start + size]
+        memory[:size] = memoryview(data)[start : start + size]
         memory[size : size + TIME_SIZE] = _NO_TIME
-    return Trajectory(found.stamp, found.frame_id, points, found.first_time)
+    return tuple.__new__(Trajectory, (stamp, frame_id, out[:count], first_time))
 
 
 _known: list[tuple[Points, memoryview[Any]]] = []
@@ -85,13 +81,12 @@ def view_trajectory(data: bytes) -> Trajectory:
     Raises DecodeError when the data are no trajectory.
     """
     data = little_endian(data, TRAJECTORY)
-    found = _layout(data)
+    stamp, frame_id, count, first_time, start = _layout(data)
     points: Points = np.empty(0, POINT_HEAD)
-    if found.size:
-        strides = (POINT.itemsize,)
-        points = np.ndarray((found.size,), POINT_HEAD, data, found.start, strides)
+    if count:
+        points = np.ndarray((count,), POINT_HEAD, data, start, (_POINT_SIZE,))
     points.flags.writeable = False
-    return Trajectory(found.stamp, found.frame_id, points, found.first_time)
+    return Trajectory(stamp, frame_id, points, first_time)
 
 
 def encode_trajectory(
@@ -121,10 +116,10 @@ def _layout(data: bytes) -> _Layout:
         (count,) = _U32.unpack_from(data, count_at)
         if count == 0:
             wire.check_end(data, count_at + 4, TRAJECTORY)
-            return _Layout(stamp, frame_id, 0, Time(), 0)
+            return stamp, frame_id, 0, Time(), 0
         first_time = Time(*_TIME.unpack_from(data, count_at + 4))
     except error:
         raise wire.truncated(TRAJECTORY, count_at + 12, len(data)) from None
     start = wire.aligned(count_at + 12, 8)
-    wire.check_end(data, start + count * POINT.itemsize - TIME_SIZE, TRAJECTORY)
-    return _Layout(stamp, frame_id, count, first_time, start)
+    wire.check_end(data, start + count * _POINT_SIZE - TIME_SIZE, TRAJECTORY)
+    return stamp, frame_id, count, first_time, start

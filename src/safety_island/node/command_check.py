@@ -20,7 +20,7 @@ class Checked(NamedTuple):
     detail: str = ""
 
 
-NOT_CHECKED = Checked(None, Reason.NONE, Outcome.NOT_READY)
+_PASSED, _CLAMPED, _ = Verdict
 
 
 class CommandCheck:
@@ -44,13 +44,13 @@ class CommandCheck:
     ) -> Checked:
         """Judge a command at ``now`` [s, monotonic]; speed [m/s] and steering [rad] as measured."""
         self.sequence += 1
-        oldest = min(command.stamp, command.longitudinal_stamp)
-        proposal = Proposal(now, oldest, self.sequence, *command[2:6])
+        stamp, other, *values, _ = command
+        proposal = Proposal(now, stamp if stamp < other else other, self.sequence, *values)
         decision = self._guard.check(proposal, speed, steering, engaged)
         self.verdict, self.limits = decision.verdict, decision.limits
-        if decision.verdict is Verdict.PASSED:
+        if decision.verdict is _PASSED:
             return Checked(command)
-        if decision.verdict is Verdict.CLAMPED:
+        if decision.verdict is _CLAMPED:
             return self._clamp(command, decision[2:])
         return self._refuse(command, now - self._timeout_s)
 

@@ -12,11 +12,10 @@ from safety_island.life_cycle.ramp import Motion
 from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State
 from safety_island.life_cycle.transition import Life
-from safety_island.messages.outputs import Control
-from safety_island.messages.wire import Time
+from safety_island.messages.wire import NANOSECONDS
 from safety_island.node.arming import Arming
 from safety_island.node.command import Computed, substitute
-from safety_island.node.command_check import NOT_CHECKED, Checked, CommandCheck
+from safety_island.node.command_check import Checked, CommandCheck
 from safety_island.node.controllers import NO_COMMAND, Controllers, Ran
 from safety_island.node.explain import explain
 from safety_island.node.follower import Follower
@@ -25,6 +24,7 @@ from safety_island.node.input_set import NOT_BLOCKED, Blocked, InputSet
 from safety_island.node.node import Node
 from safety_island.node.outputs import ControlTopic, Output, ProcessingTime
 from safety_island.node.report import Outcome, TickReport, describe
+from safety_island.node.sender import CommandSender
 from safety_island.node.status import StatusTopic
 from safety_island.node.transport import Transport
 from safety_island.params import IslandParameters
@@ -35,6 +35,7 @@ ON_TIME = Tick(0, 0, 0)
 MEMORY_EVERY = 64
 """Ticks between two looks at the memory in use."""
 _NO_TIMES = (0, 0)
+_PUBLISHED = Outcome.PUBLISHED
 _SENDS = (State.READY, State.ACTIVE)
 _ALARMING = (State.HOLD, State.STOP, State.SILENT)
 _OUTCOMES = {
@@ -81,27 +82,26 @@ class ControllerNode(Node):
         guard = Guard(parameters.guard, parameters.vehicle.wheel_base, timeout_s)
         self.check = CommandCheck(guard, timeout_s, self.logger)
         self.arming = Arming(self.subscription(topics.ARM), self.logger)
-        self._control_topics: list[ControlTopic] = []
-        self.outputs = tuple(outputs) if outputs is not None else (self.control_topic(),)
+        self.sender = CommandSender(self.clock, self.logger)
+        self.sender.outputs = (self.control_topic(),) if outputs is None else tuple(outputs)
         self.report: TickReport | None = None
         """The last tick."""
         self.observers: list[Callable[[TickReport], None]] = []
         """Told of each tick of ``run`` after its end; they take their time from the same thread."""
-        self._times = tuple(
+        self._lateral_time, self._longitudinal_time = (
             ProcessingTime(topic, self.publisher(topic), self.logger)
             for topic in (topics.LATERAL_TIME, topics.LONGITUDINAL_TIME)
         )
         self.status = StatusTopic(self, self.publisher(topics.STATUS))
         self._ticks = 0
         self._last_tick: float | None = None
-        self._command: Control | None = None
 
     def control_topic(self) -> ControlTopic:
         """Make the output that publishes ``control_cmd``."""
         publisher = self.publisher(topics.CONTROL)
         self.identity.own.add(publisher.guid)
         topic = ControlTopic(topics.CONTROL, publisher, self.logger)
-        self._control_topics.append(topic)
+        self.sender.topics.append(topic)
         return topic
 
     def on_tick(self, due: Tick) -> None:
@@ -119,7 +119,7 @@ class ControllerNode(Node):
         start_ns = self.clock.monotonic_ns()
         if now is None:
             now = start_ns / 1e9
-        self._command, self.controllers.spent_ns = None, _NO_TIMES
+        self.sender.command, self.controllers.spent_ns = None, _NO_TIMES
         refused, blocked = 0, NOT_BLOCKED
         try:
             refused = self._take(now, due.skipped)
@@ -132,9 +132,8 @@ class ControllerNode(Node):
             self.logger.error("the tick failed: %s", detail, throttled=True)
             self.life_cycle.fault()
         self.inputs.warn(now, self.clock.wall_ns())
-        if self._command is None:  # silence takes back what was said last
-            for topic in self._control_topics:
-                topic.withdraw()
+        if self.sender.command is None:
+            self.sender.withdraw()
         self._ticks += 1
         self._last_tick = now
         lateral_ns, longitudinal_ns = self.controllers.spent_ns
@@ -152,15 +151,14 @@ class ControllerNode(Node):
             longitudinal_ns / 1e9,
             tuple([now - item.accepted_at for item in self.inputs.items]),
             refused,
-            self._command,
+            self.sender.command,
         )
         self.status.send(self.report)
         return self.report
 
     def close(self) -> None:
         """Close the outputs, then leave the domain."""
-        for output in self.outputs:
-            output.close()
+        self.sender.close()
         super().close()
 
     def _take(self, now: float, skipped: int) -> int:
@@ -176,9 +174,12 @@ class ControllerNode(Node):
         """Return what forbids to send, before the controllers are asked."""
         for name in () if self.inputs.are_complete else self.inputs.missing():
             self.logger.info("Waiting for %s data", name, throttled=True, site=f"input {name}")
-        reason, blocked = self.identity.blocked(now), self.inputs.blocked(now)
+        blocked = self.inputs.blocked(now)
+        reason = self.identity.blocked(now)
+        if not reason:
+            return blocked
         waits = reason is Reason.DISCOVERING and blocked.reason is Reason.WAITING_FOR_INPUT
-        return Blocked(reason) if reason and not waits else blocked
+        return blocked if waits else Blocked(reason)
 
     def _control(self, blocked: Blocked, now: float, start_ns: int) -> tuple[Outcome, str]:
         """From inputs that are taken to a command that is sent."""
@@ -212,7 +213,7 @@ class ControllerNode(Node):
     def _check(self, ran: Ran, now: float, start_ns: int, engaged: bool) -> Checked:
         """Ask the guard about the command of the controllers."""
         if ran.command is None:
-            return NOT_CHECKED._replace(outcome=Outcome.FAULT, detail=ran.fault)
+            return Checked(None, outcome=Outcome.FAULT, detail=ran.fault)
         now += (self.clock.monotonic_ns() - start_ns) / 1e9
         return self.check.check(
             ran.command, now, self.inputs.speed(), self.inputs.steering(), engaged
@@ -222,9 +223,9 @@ class ControllerNode(Node):
         """Send what the state lets out."""
         life = self.life_cycle.life
         if life.state in _SENDS and checked.command is not None:
-            sent = self._publish(checked.command, Outcome.PUBLISHED)
-            motion = Motion._make(checked.command[2:6])
-            self.life_cycle.sent(motion, sent[0] is Outcome.PUBLISHED, now)
+            sent = self._publish(checked.command, _PUBLISHED)
+            motion = tuple.__new__(Motion, checked.command[2:6])
+            self.life_cycle.sent(motion, sent[0] is _PUBLISHED, now)
             return sent
         if (substituted := self.life_cycle.motion()) is not None:
             return self._substitute(substituted, now)
@@ -242,31 +243,16 @@ class ControllerNode(Node):
         return self._publish(checked.command, Outcome.SUBSTITUTED)
 
     def _publish(self, result: Computed, sent: Outcome) -> tuple[Outcome, str]:
-        """Give a command to every output."""
-        offset_ns = self.clock.wall_ns() - self.clock.monotonic_ns()
-        self._command = command = result.to_control(offset_ns)
-        stamp_ns = command.stamp.nanoseconds
-        results = [self._give(output, command, stamp_ns) for output in self.outputs]
-        if any(results):
+        """Send a command, and say how that ended."""
+        if self.sender.send(result):
             return sent, ""
-        return Outcome.OUTPUT_FAILED, ", ".join(output.name for output in self.outputs)
-
-    def _give(self, output: Output, command: Control, stamp_ns: int) -> bool:
-        """Give a command to one output; whatever happens there stops no other output."""
-        try:
-            return output.send(command, stamp_ns)
-        except MemoryError:
-            raise
-        except Exception as error:  # against its contract
-            output.failed += 1
-            detail = describe(error)
-            self.logger.error("output %s failed: %s", output.name, detail, throttled=True)
-            return False
+        return Outcome.OUTPUT_FAILED, ", ".join(output.name for output in self.sender.outputs)
 
     def _tell_times(self) -> None:
-        stamp = Time.from_nanoseconds(self.clock.wall_ns())
-        for topic, spent_ns in zip(self._times, self.controllers.spent_ns, strict=True):
-            topic.send(stamp, spent_ns / 1e9)
+        stamp = divmod(self.clock.wall_ns(), NANOSECONDS)
+        lateral_ns, longitudinal_ns = self.controllers.spent_ns
+        self._lateral_time.send(stamp, lateral_ns)
+        self._longitudinal_time.send(stamp, longitudinal_ns)
 
     def _detail(self, reason: Reason) -> str:
         if reason is Reason.WAITING_FOR_INPUT:

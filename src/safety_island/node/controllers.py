@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from safety_island.control.status import MpcStatus
-from safety_island.node.command import Computed, computed
+from safety_island.messages.fixed import reader
+from safety_island.node.command import Computed
 from safety_island.node.follower import Follower
 from safety_island.node.report import describe
 from safety_island.platform.interfaces import Clock, Logger
@@ -23,6 +24,7 @@ class Ran(NamedTuple):
 
 
 NO_COMMAND = Ran(None)
+_NO_REFERENCE, _SOLVED = MpcStatus.NO_REFERENCE, MpcStatus.SOLVED
 
 
 class Controllers:
@@ -35,6 +37,7 @@ class Controllers:
         self._logger = logger
         self._stamp = follower.command["stamp"]
         """Of the lateral part: the kernels leave it to their caller."""
+        self._command = reader(follower.command, *Computed._fields)
 
     def run(self, now: float) -> Ran:
         """Run both at ``now`` [s, monotonic]; an exception but MemoryError is a value."""
@@ -48,20 +51,22 @@ class Controllers:
             return Ran(None, fault)
 
     def _run(self, now: float) -> Ran:
-        if not self._follower.is_ready():
+        follower, monotonic_ns = self._follower, self._clock.monotonic_ns
+        if not follower.is_ready():
             return NO_COMMAND
-        begin_ns = self._clock.monotonic_ns()
-        status = self._follower.run_lateral(now)
-        if status == MpcStatus.NO_REFERENCE:
+        begin_ns = monotonic_ns()
+        status = follower.run_lateral(now)
+        if status is _NO_REFERENCE:
             return NO_COMMAND
         self._stamp[0] = now
-        middle_ns = self._clock.monotonic_ns()
-        if self._follower.run_longitudinal(now) < 0:
+        middle_ns = monotonic_ns()
+        if follower.run_longitudinal(now) < 0:
             return NO_COMMAND
-        self.spent_ns = (middle_ns - begin_ns, self._clock.monotonic_ns() - middle_ns)
-        self._follower.sync()
-        is_solved = status == MpcStatus.SOLVED
-        if not is_solved:
-            reason = MpcStatus(status).name.lower().replace("_", " ")
-            self._logger.warning("no new steering angle: %s", reason, throttled=True, site="mpc")
-        return Ran(computed(self._follower.command), "", not is_solved)
+        self.spent_ns = (middle_ns - begin_ns, monotonic_ns() - middle_ns)
+        follower.sync()
+        command = tuple.__new__(Computed, self._command())
+        if status is _SOLVED:
+            return Ran(command)
+        reason = status.name.lower().replace("_", " ")
+        self._logger.warning("no new steering angle: %s", reason, throttled=True, site="mpc")
+        return Ran(command, unsolved=True)

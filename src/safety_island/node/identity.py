@@ -10,6 +10,8 @@ from safety_island.node.transport import Transport
 from safety_island.params import IslandParameters
 from safety_island.platform.interfaces import Logger
 
+_NONE = Reason.NONE
+
 
 class Identity:
     """Looks at discovery when it has news. ``own`` holds the GUIDs of our command publishers."""
@@ -52,4 +54,4 @@ class Identity:
             return Reason.DISCOVERING
         if islands.others and not self._keeps_first:
             return Reason.SECOND_PUBLISHER
-        return Reason.NONE
+        return _NONE

@@ -22,6 +22,8 @@ STEERING = 2
 OPERATION_MODE = 4
 """Places in the table of inputs."""
 
+_NONE, _AUTONOMOUS = Reason.NONE, int(Mode.AUTONOMOUS)
+
 NO_SUBJECT = 255
 """Stands for: the reason is about no input."""
 
@@ -59,7 +61,7 @@ class InputSet:
         self._logger = logger
         self._keeps_first = params.second_publisher == "keep_first"
         self._warning_clock_ns = params.clock_warning * 1e9
-        self.warnings = (0,) * len(self.items)
+        self.warnings = [0] * len(self.items)
         """Bits of InputWarning for each input, as of the last tick."""
         self.are_complete = False
         """Whether a sample of every input was accepted."""
@@ -134,26 +136,27 @@ class InputSet:
 
     def warn(self, now: float, wall_ns: int) -> None:
         """Look which warnings stand, and log those that are new."""
-        found = tuple([self._warnings(item, now, wall_ns) for item in self.items])
+        found = [0] * len(self.items)
+        for index, item in enumerate(self.items):
+            age_s = now - item.accepted_at
+            is_old = age_s > item.age_warning_s
+            # A stamp is as old as its sample; the operation mode was stamped when it changed.
+            is_off = abs(wall_ns - item.stamp_ns) > self._warning_clock_ns + age_s * 1e9
+            is_off = is_off and item is not self._mode
+            if is_old or is_off or item.is_suspect or now <= self._unsettled_until:
+                if item.message is not None:
+                    about = item.stamps, item.writers, item.rate
+                    found[index] = warnings(now, *about, is_old, is_off)
         if found != self.warnings:
-            before, self.warnings = self.warnings, found
-            for item, old, new in zip(self.items, before, found, strict=True):
-                for bit in InputWarning(new & ~old):
-                    what = EXPLANATIONS[bit][0]
-                    site = f"{item.topic} {bit.name}"
-                    self._logger.warning("%s: %s", item.name, what, throttled=True, site=site)
+            self._tell(found)
 
-    def _warnings(self, item: Input, now: float, wall_ns: int) -> int:
-        age_s = now - item.accepted_at
-        is_old = age_s > item.age_warning_s
-        # A stamp is as old as its sample; the operation mode was stamped when it changed.
-        is_off = abs(wall_ns - item.stamp_ns) > self._warning_clock_ns + age_s * 1e9
-        is_off = is_off and item is not self._mode
-        if not (is_old or is_off or item.is_suspect or now <= self._unsettled_until):
-            return 0  # the usual case
-        if item.message is None:
-            return 0
-        return warnings(now, item.stamps, item.writers, item.rate, is_old, is_off)
+    def _tell(self, found: list[int]) -> None:
+        before, self.warnings = self.warnings, found
+        for item, old, new in zip(self.items, before, found, strict=True):
+            for bit in InputWarning(new & ~old):
+                what = EXPLANATIONS[bit][0]
+                site = f"{item.topic} {bit.name}"
+                self._logger.warning("%s: %s", item.name, what, throttled=True, site=site)
 
     @property
     def operation_mode(self) -> OperationMode | None:
@@ -168,18 +171,15 @@ class InputSet:
 
     def disengaged(self) -> Reason:
         """Say why the vehicle is not under control, NONE when it is."""
-        if self._mode.message is None:
+        mode = self._mode
+        state: OperationMode | None = mode.message
+        if state is None:
             return Reason.WAITING_FOR_INPUT
-        if not self._has_mode_writer():
+        if mode.source_guid not in mode.writers.alive:  # another one has said nothing yet
             return Reason.MODE_WRITER_GONE
-        state: OperationMode = self._mode.message
-        if state.mode == Mode.AUTONOMOUS and state.is_autoware_control_enabled:
-            return Reason.NONE
+        if state.mode == _AUTONOMOUS and state.is_autoware_control_enabled:
+            return _NONE
         return Reason.NOT_AUTONOMOUS
-
-    def _has_mode_writer(self) -> bool:
-        """Whether the one who told the mode in force still lives; another says nothing yet."""
-        return self._mode.source_guid in self._mode.writers.alive
 
     def speed(self) -> float:
         """Return the speed [m/s] that was measured last; 0 before the first time."""

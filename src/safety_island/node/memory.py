@@ -77,9 +77,10 @@ class MemoryPublisher:
 
     def write(self, data: bytes) -> bool:
         """Send one message; its time stamp is the virtual wall clock. Always possible."""
-        self.last = MemorySample(data, self._clock.wall_ns(), self.guid)
+        sample = tuple.__new__(MemorySample, (data, self._clock.wall_ns(), self.guid))
+        self.last = sample
         for reader in self._readers:
-            reader.put(self.last)
+            reader.put(sample)
         return True
 
     def withdraw(self) -> None:

@@ -6,7 +6,6 @@ from typing import Protocol
 
 from safety_island.dds.topics import TopicEntry
 from safety_island.messages.outputs import Control, encode_control, encode_float64_stamped
-from safety_island.messages.wire import Time
 from safety_island.node.transport import Publisher
 from safety_island.platform.interfaces import Logger
 
@@ -77,6 +76,6 @@ class ControlTopic(TopicWriter):
 class ProcessingTime(TopicWriter):
     """Publishes how long a controller took, as ``Float64Stamped`` in milliseconds."""
 
-    def send(self, stamp: Time, seconds: float) -> None:
-        """Publish a duration [s]; a failure is no reason to stop."""
-        self.write(encode_float64_stamped(stamp, seconds * 1e3))
+    def send(self, stamp: tuple[int, int], spent_ns: int) -> None:
+        """Publish a duration [ns]; a failure is no reason to stop."""
+        self.write(encode_float64_stamped(stamp, spent_ns / 1e6))

@@ -67,12 +67,15 @@ class TickReport(NamedTuple):
     @property
     def sent(self) -> bool:
         """Whether any command went out, be it the controllers' or one in their place."""
-        return self.outcome in (Outcome.PUBLISHED, Outcome.SUBSTITUTED)
+        return self.outcome in _SENT
 
     @property
     def published(self) -> bool:
         """Whether the command of this tick went out."""
         return self.outcome is Outcome.PUBLISHED
+
+
+_SENT = frozenset({Outcome.PUBLISHED, Outcome.SUBSTITUTED})
 
 
 def describe(error: Exception) -> str:

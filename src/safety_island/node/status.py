@@ -12,7 +12,7 @@ from safety_island.messages.wire import NANOSECONDS
 from safety_island.node.input_status import InputStatus
 from safety_island.node.outputs import TopicWriter
 from safety_island.node.report import describe
-from safety_island.node.trace_status import TraceStatus
+from safety_island.node.trace_status import ERRORS, SOLVER, STATES, TraceStatus
 from safety_island.node.transport import Publisher
 
 if TYPE_CHECKING:
@@ -22,18 +22,21 @@ if TYPE_CHECKING:
 _ARMED = (State.ACTIVE, State.HOLD, State.STOP)
 
 
-_TICK = ("arm_nonce", "tick", "commands", "memory")
-_COMMAND = (
-    "command_angle", "command_rate", "command_velocity", "command_acceleration", "tick_time",
-    "lateral_time", "longitudinal_time", "lateness", "missed_periods", "missed_periods_total",
-    "overruns",
+_SCALARS = (
+    "arm_nonce", "tick", "commands", "memory",
+    *ERRORS,
+    "command_angle", "command_rate", "command_velocity", "command_acceleration",
+    "tick_time", "lateral_time", "longitudinal_time", "lateness",
+    "missed_periods", "missed_periods_total", "overruns",
+    "controller_limits", "guard_limits", "guard_clamped", "guard_refused", "sequence",
+    "output_failures",
+    *SOLVER,
+    "state", "reason", "subject", "latched_cause", "operation_mode",
+    *STATES,
+    "guard_verdict", "output_mode", "arm_result", "other_control_writers",
+    "degraded", "armed", "engaged", "control_enabled", "published",
 )  # fmt: skip
-_GUARD = ("guard_limits", "guard_clamped", "guard_refused", "sequence", "output_failures")
-_LIFE = ("state", "reason", "subject", "latched_cause", "operation_mode")
-_FLAGS = (
-    "guard_verdict", "output_mode", "arm_result", "other_control_writers", "degraded", "armed",
-    "engaged", "control_enabled", "published",
-)  # fmt: skip
+"""What lies between stamp and inputs, in the order of the message: written in one stroke."""
 _NO_COMMAND = (math.nan,) * 4
 
 
@@ -47,13 +50,11 @@ class StatusTopic(TopicWriter):
         self._node, self._mode = node, int(node.mode)
         self._writer = writer = StatusWriter()
         self._stamp = writer.fields.stamp
-        self._tick, self._command, self._guard, self._life, self._flags = (
-            writer.pack(*names) for names in (_TICK, _COMMAND, _GUARD, _LIFE, _FLAGS)
-        )
+        self._pack = writer.pack(*_SCALARS)
         self._inputs = [
             InputStatus(item, writer, place) for place, item in enumerate(node.inputs.items)
         ]
-        self._trace = TraceStatus(node.follower.trace, writer)
+        self._trace = TraceStatus(node.follower.trace)
         self._commands = self._missed = 0
 
     def send(self, report: TickReport) -> None:
@@ -67,22 +68,27 @@ class StatusTopic(TopicWriter):
     def _fill(self, report: TickReport) -> None:
         sec, nanosec = divmod(self._node.clock.wall_ns(), NANOSECONDS)
         self._stamp.sec[0], self._stamp.nanosec[0] = sec, nanosec
-        if report.lateral_time_s:
-            self._trace.fill()
-        else:
-            self._trace.clear()
         for item, bits in zip(self._inputs, self._node.inputs.warnings, strict=True):
             item.fill(report.now, bits)
-        self._fill_tick(report)
-        self._fill_state(report)
-
-    def _fill_tick(self, report: TickReport) -> None:
-        node, command = self._node, report.command
-        check, sent = node.check, report.sent
-        self._commands += sent
+        if report.lateral_time_s:
+            self._trace.read()
+        else:
+            self._trace.clear()
+        self._commands += report.sent
         self._missed += report.skipped
-        self._tick(node.arming.nonce, report.number, self._commands, self.memory_bytes)
-        self._command(
+        self._fill_scalars(report)
+
+    def _fill_scalars(self, report: TickReport) -> None:
+        node, command, (state, reason, cause) = self._node, report.command, report.life
+        check, overrun, mode = node.check, node.life_cycle.overrun, node.inputs.operation_mode
+        errors, solver, states, limits = self._trace.last
+        sent = report.sent
+        self._pack(
+            node.arming.nonce,
+            report.number,
+            self._commands,
+            self.memory_bytes,
+            *errors,
             *(_NO_COMMAND if command is None or not sent else command[2:6]),
             report.tick_time_s,
             report.lateral_time_s,
@@ -90,23 +96,27 @@ class StatusTopic(TopicWriter):
             report.lateness_s,
             report.skipped,
             self._missed,
-            node.life_cycle.overrun.in_row,
-        )
-        failed = sum([output.failed for output in node.outputs])
-        self._guard(check.limits, check.clamped, check.refused, check.sequence, failed)
-
-    def _fill_state(self, report: TickReport) -> None:
-        node, (state, reason, cause) = self._node, report.life
-        mode = node.inputs.operation_mode
-        self._life(state, reason, report.subject, cause, 0 if mode is None else mode.mode)
-        self._flags(
-            node.check.verdict,
+            overrun.in_row,
+            limits,
+            check.limits,
+            check.clamped,
+            check.refused,
+            check.sequence,
+            sum([output.failed for output in node.sender.outputs]),
+            *solver,
+            state,
+            reason,
+            report.subject,
+            cause,
+            0 if mode is None else mode.mode,
+            *states,
+            check.verdict,
             self._mode,
             node.arming.result,
             min(len(node.identity.islands.others), 255),
-            node.life_cycle.overrun.degraded,
+            overrun.degraded,
             state in _ARMED,
             not node.inputs.disengaged(),
             mode is not None and mode.is_autoware_control_enabled,
-            report.sent,
+            sent,
         )

@@ -2,34 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import partial
-from operator import itemgetter
-from struct import Struct
-from typing import Any
-
-import numpy as np
+import math
+from itertools import compress
+from typing import NamedTuple
 
 from safety_island.control.records import Records
 from safety_island.control.status import ControllerLimit
-from safety_island.messages.fixed import letter
-from safety_island.messages.status import StatusWriter
+from safety_island.messages.fixed import reader
+from safety_island.messages.status import NO_VALUE
 
-VALUES = {
-    "lateral_error": "lateral_error",
-    "yaw_error": "yaw_error",
-    "residual": "residual",
-    "stop_dist": "stop_dist",
-    "target_vel": "target_vel",
-    "solver_status": "solver_status",
-    "solver_iterations": "solver_iterations",
-    "active_constraints": "active_constraints",
-    "longitudinal_state": "lon_state",
-    "mpc_status": "mpc_status",
-}
-"""Field of the status -> field of TRACE; three runs of neighbours in the status."""
-_ERRORS, _SOLVER = 5, 8
-"""Where the first and the second run end."""
+ERRORS = ("lateral_error", "yaw_error", "residual", "stop_dist", "target_vel")
+SOLVER = ("solver_status", "solver_iterations", "active_constraints")
+STATES = ("longitudinal_state", "mpc_status")
+"""Fields of the status that are copied from a field of TRACE; each line of neighbours."""
+COLUMNS = {name: name for name in (*ERRORS, *SOLVER, *STATES)} | {"longitudinal_state": "lon_state"}
+"""Field of the status -> field of TRACE."""
 
 FLAGS = {
     ControllerLimit.STEERING_ANGLE: "angle_limited",
@@ -47,45 +34,42 @@ FLAGS = {
 """Bit of the status -> flag of TRACE."""
 
 
+class Traced(NamedTuple):
+    """What the trace says, in the words of the status."""
+
+    errors: tuple[float, ...] = (math.nan,) * len(ERRORS)
+    solver: tuple[int, ...] = (0,) * len(SOLVER)
+    states: tuple[int, ...] = (NO_VALUE,) * len(STATES)
+    limits: int = 0
+    """Bits of ControllerLimit."""
+
+
 class TraceStatus:
-    """Copies a TRACE record of shape (1,), always the same memory, into the status."""
+    """Reads a TRACE record of shape (1,), always the same memory; ``last`` is what it said."""
 
-    def __init__(self, trace: Records, writer: StatusWriter) -> None:
-        names = tuple(VALUES)
-        self._limits = writer.fields.controller_limits
-        self._read_values = _reader(trace, list(VALUES.values()))
-        self._read_flags = _reader(trace, list(FLAGS.values()))
+    def __init__(self, trace: Records) -> None:
+        self.last = Traced()
+        self._read = reader(trace, *COLUMNS.values(), *FLAGS.values())
         self._bits = [int(bit) for bit in FLAGS]
-        self._write_errors = writer.pack(*names[:_ERRORS])
-        self._write_solver = writer.pack(*names[_ERRORS:_SOLVER])
-        self._write_states = writer.pack(*names[_SOLVER:])
 
-    def fill(self) -> None:
-        """Copy what the controllers did in this tick."""
-        values = self._read_values()
-        self._write_errors(*values[:_ERRORS])
-        self._write_solver(*values[_ERRORS:_SOLVER])
-        self._write_states(*values[_SOLVER:])
-        limits = 0
-        for bit, acts in zip(self._bits, self._read_flags(), strict=True):
-            if acts:
-                limits |= bit
-        self._limits[0] = limits
+    def read(self) -> None:
+        """Take what the controllers did in this tick."""
+        values = self._read()
+        flags = values[_FLAGS:]
+        self.last = Traced(
+            values[:_SOLVER],
+            values[_SOLVER:_STATES],
+            values[_STATES:_FLAGS],
+            sum(compress(self._bits, flags)) if True in flags else 0,
+        )
 
     def clear(self) -> None:
         """Note that the controllers did not run in this tick: no limit acted, the rest stays."""
-        self._limits[0] = 0
+        if self.last.limits:
+            self.last = self.last._replace(limits=0)
 
 
-def _reader(trace: Records, names: list[str]) -> Callable[[], tuple[Any, ...]]:
-    """Return a function that reads scalar fields of a record at once, in the order of the names."""
-    fields: Any = trace.dtype.fields
-    letters, end = "<", 0
-    in_memory = sorted(names, key=lambda name: int(fields[name][1]))
-    for name in in_memory:
-        column, at = fields[name][:2]
-        letters += f"{at - end}x{letter(column)}"
-        end = at + column.itemsize
-    read = partial(Struct(letters).unpack_from, trace.view(np.uint8).data)
-    order = itemgetter(*(in_memory.index(name) for name in names))
-    return lambda: order(read())
+_SOLVER = len(ERRORS)
+_STATES = _SOLVER + len(SOLVER)
+_FLAGS = _STATES + len(STATES)
+"""Places in what is read."""
