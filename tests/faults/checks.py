@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import pytest
 
+from safety_island.gate.warning import InputWarning
 from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State
+from safety_island.node.report import TickReport
 from tests.faults.scene import FAST, INPUTS, SLOW, Row, Scene
 
 EPSILON_S = 1e-6
@@ -65,6 +67,18 @@ def recovers(scene: Scene, cause: Reason, settle_s: float = 1.0) -> None:
     scene.run(settle_s)
     stays_latched(scene, cause)
     rearms(scene)
+
+
+def warned(scene: Scene) -> dict[str, InputWarning]:
+    """Return what is warned of each input in any tick from now on; it fills as the scene runs."""
+    found = dict.fromkeys(INPUTS, InputWarning(0))
+
+    def note(report: TickReport) -> None:
+        for key, bits in zip(INPUTS, scene.node.inputs.warnings, strict=True):
+            found[key] |= bits
+
+    scene.node.observers.append(note)
+    return found
 
 
 def subject(row: Row) -> str:

@@ -8,6 +8,7 @@ import pytest
 
 from safety_island.can.receiver import CommandReceiver, Verdict
 from safety_island.gate.reason import SampleReason
+from safety_island.gate.warning import InputWarning
 from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State
 from tests.faults import wire
@@ -19,10 +20,12 @@ from tests.faults.checks import (
     silent_within,
     stays_active,
     stays_latched,
+    warned,
 )
 from tests.faults.scene import AGED, EPOCH_NS, FAST, SLOW, Row, Scene
 
 HOUR_NS = 3600 * 10**9
+STEP = InputWarning.CLOCK_STEP
 DAYS_49_7_NS = 2**32 * 10**6
 LAST_SECOND = 2**31 - 1
 """The year 2038: a stamp of 32 bits cannot name 2262."""
@@ -39,6 +42,7 @@ def on_the_grid(rows: list[Row], period_s: float) -> bool:
 def test_row_32_row_33_a_step_of_the_islands_wall_clock(period_s: float, step_ns: int) -> None:
     """No tick is missed and nothing counts as stale; only the stamps of commands step."""
     twin, scene = Scene(period_s).drive(), Scene(period_s).drive()
+    warnings = warned(scene)
     scene.clock.set_wall_offset_ns(EPOCH_NS + step_ns)
     rows, others = stays_active(scene, 10.0), stays_active(twin, 10.0)
     assert on_the_grid(rows, period_s)
@@ -46,6 +50,7 @@ def test_row_32_row_33_a_step_of_the_islands_wall_clock(period_s: float, step_ns
         assert row.command is not None and other.command is not None
         assert row.command.stamp.nanoseconds - other.command.stamp.nanoseconds == step_ns
         assert row.command[2:] == other.command[2:]
+    assert {warnings[key] for key in AGED} == {InputWarning.CLOCK}
 
 
 @BOTH
@@ -55,8 +60,11 @@ def test_row_32_row_33_a_step_of_the_main_computes_wall_clock(
 ) -> None:
     """Back: its stamps are older than those held, but they go on, so it is a clock."""
     scene = Scene(period_s).drive()
+    warnings = warned(scene)
     scene.remote_clock.set_wall_offset_ns(EPOCH_NS + step_ns)
     assert on_the_grid(stays_active(scene, 10.0), period_s)
+    assert all(warnings[key] & STEP for key in AGED)
+    assert not any(bits & STEP for bits in scene.node.inputs.warnings)
     steps_back = [scene.input(key).stamps.steps_back for key in AGED]
     assert steps_back == ([1] * 4 if step_ns < 0 else [0] * 4)
 
@@ -65,15 +73,23 @@ def test_row_32_row_33_a_step_of_the_main_computes_wall_clock(
 @pytest.mark.parametrize("skew_ms", [-5000, -500, -100, 100, 500, 5000])
 def test_row_34_the_skew_of_a_sender_changes_no_command(period_s: float, skew_ms: int) -> None:
     twin, scene = Scene(period_s), Scene(period_s, skew_ns=skew_ms * 1_000_000)
+    warnings = warned(scene)
     assert scene.drive().rows == twin.drive().rows
     assert stays_active(scene, 10.0) == stays_active(twin, 10.0)
+    for key in AGED:
+        if abs(skew_ms) > 100:  # the limit itself, with or without the time on the way
+            assert warnings[key] & InputWarning.CLOCK, (key, warnings[key])
+        assert not warnings[key] & STEP
 
 
 @pytest.mark.parametrize("skew_ms", [-5000, -100, 100, 5000])
 def test_row_34_a_skew_that_comes_on_the_way_ends_nothing(skew_ms: int) -> None:
     scene = Scene().drive()
+    warnings = warned(scene)
     scene.remote_clock.set_wall_offset_ns(EPOCH_NS + skew_ms * 1_000_000)
     stays_active(scene, 10.0)
+    for key in AGED:  # what is 0.1 s off may as well be a delay
+        assert bool(warnings[key] & STEP) is (abs(skew_ms) > 100), (key, warnings[key])
 
 
 @BOTH
@@ -83,7 +99,9 @@ def test_row_34_a_change_of_mode_is_heard_after_a_step_back(period_s: float) -> 
     scene.remote_clock.set_wall_offset_ns(EPOCH_NS - HOUR_NS)
     scene.world._engage = False
     scene.disengage()
+    warnings = warned(scene)
     assert scene.run(0.3)[-1].state is State.READY
+    assert warnings["operation_mode"] & STEP
 
 
 def test_row_34_stamps_keep_no_dead_input_alive() -> None:

@@ -7,7 +7,13 @@ import math
 import pytest
 
 from safety_island.gate.reason import SampleReason
-from safety_island.gate.stamps import BEGIN_ANEW_S, FORGET_RATE, STEP_BACK_SHARE, StampGate
+from safety_island.gate.stamps import (
+    BEGIN_ANEW_S,
+    FORGET_RATE,
+    STEP_BACK_SHARE,
+    STEP_TOLD_S,
+    StampGate,
+)
 from safety_island.messages.wire import Time
 
 OLDER, DELAYED = SampleReason.OLDER, SampleReason.DELAYED
@@ -37,9 +43,10 @@ def gate() -> StampGate:
 
 
 def test_the_numbers() -> None:
-    assert (BEGIN_ANEW_S, FORGET_RATE, STEP_BACK_SHARE) == (10.0, 0.001, 0.5)
+    assert (BEGIN_ANEW_S, FORGET_RATE, STEP_BACK_SHARE, STEP_TOLD_S) == (10.0, 0.001, 0.5, 1.0)
     assert StampGate().limit_s == math.inf
     assert (StampGate(0.5).steps_back, StampGate(0.5).delay_s, StampGate(0.5).stamp_ns) == (0, 0, 0)
+    assert StampGate(0.5).step_told_until == -math.inf
 
 
 @pytest.mark.parametrize(
@@ -161,6 +168,64 @@ class TestOlder:
         assert [offer(gate, 50.0 + i, 1001.0 + i) for i in range(3)] == [None] * 3
         assert offer(gate, 20.0, 1004.0) is None
         assert gate.steps_back == 2
+
+
+class TestStep:
+    def test_back_is_told_for_a_second_after_the_search(self, gate: StampGate) -> None:
+        for i in range(2):
+            assert offer(gate, 50.0 + 0.125 * i, 1000.125 + 0.125 * i) is OLDER
+            assert gate.step_told_until == -math.inf
+        assert offer(gate, 50.25, 1000.375) is None
+        assert gate.step_told_until == 1001.375
+        assert offer(gate, 50.375, 1000.5) is None
+        assert gate.step_told_until == 1001.375
+
+    def test_what_is_judged_but_not_held_is_none(self, gate: StampGate) -> None:
+        for i in range(5):
+            gate.judge(stamp(50.0 + 0.125 * i), b"", 1000.125 + 0.125 * i)
+        assert gate.judge(stamp(200.0), b"", 1000.75) is None
+        assert (gate.steps_back, gate.step_told_until) == (0, -math.inf)
+        assert offer(gate, 100.75, 1000.75) is None
+        assert (gate.steps_back, gate.step_told_until) == (0, -math.inf)
+
+    @pytest.mark.parametrize(("early_s", "is_told"), [(0.499, False), (0.501, True), (9e8, True)])
+    def test_forward_shows_in_a_sample_that_is_too_quick(
+        self, gate: StampGate, early_s: float, is_told: bool
+    ) -> None:
+        assert offer(gate, 100.125 + early_s, 1000.125) is None
+        assert gate.step_told_until == (1001.125 if is_told else -math.inf)
+        assert (gate.steps_back, gate.delay_s) == (0, 0.0)
+
+    def test_the_limit_itself_is_no_step(self) -> None:
+        gate = StampGate(0.5 - 0.125 * (1.0 - FORGET_RATE))
+        offer(gate, 100.0, 1000.0)
+        assert offer(gate, 100.5, 1000.125) is None
+        assert gate.step_told_until == -math.inf
+
+    def test_a_delay_that_ends_is_none(self, gate: StampGate) -> None:
+        assert offer(gate, 100.125, 1000.5) is None
+        assert gate.delay_s == pytest.approx(0.3745)
+        assert offer(gate, 100.625 + 0.25, 1000.625) is None
+        assert gate.step_told_until == -math.inf
+
+    def test_it_goes_on_being_told_when_the_stamps_are_forgotten(self, gate: StampGate) -> None:
+        offer(gate, 200.0, 1000.125)
+        gate.forget()
+        assert gate.step_told_until == 1001.125
+
+    def test_after_a_pause_nobody_can_tell(self, gate: StampGate) -> None:
+        assert offer(gate, 200.0, 1010.125) is None
+        assert offer(gate, 50.0, 1020.25) is None
+        assert (gate.steps_back, gate.step_told_until) == (0, -math.inf)
+
+    def test_without_an_age_limit_only_back(self) -> None:
+        """A first sample that was said long ago is no measure for the next one."""
+        gate = StampGate()
+        offer(gate, 100.0, 1000.0)
+        offer(gate, 900.0, 1001.0)
+        assert gate.step_told_until == -math.inf
+        offer(gate, 800.0, 1002.0)
+        assert (gate.steps_back, gate.step_told_until) == (1, 1003.0)
 
 
 class TestBeginAnew:

@@ -20,9 +20,11 @@ def told(
     now: float = 9.0,
     old: bool = False,
     off: bool = False,
+    step_until: float = 8.0,
 ) -> int:
     stamps, rate, writers = StampGate(0.5), RateMeter(8.0), Writers(3)
     stamps.delay_s, rate.too_low = delay_s, low
+    stamps.step_told_until = step_until
     if guids:
         writers.update(frozenset({A}), 0.0)
         writers.update(frozenset({B, A} if guids > 1 else {B}), 8.0)
@@ -41,7 +43,9 @@ def told(
         (InputWarning.PUBLISHER_CHANGED, told(guids=1)),
         (InputWarning(0), told(guids=1, now=9.01)),
         (InputWarning.SECOND_PUBLISHER, told(guids=2, now=9.01)),
-        (InputWarning(63), told(1.0, True, 2, 9.0, True, True)),
+        (InputWarning.CLOCK_STEP, told(step_until=9.0)),
+        (InputWarning(0), told(step_until=8.99)),
+        (InputWarning(127), told(1.0, True, 2, 9.0, True, True, 9.5)),
     ],
 )
 def test_each_cause_has_its_bit(bits: InputWarning, found: int) -> None:
@@ -50,5 +54,5 @@ def test_each_cause_has_its_bit(bits: InputWarning, found: int) -> None:
 
 def test_every_warning_is_explained() -> None:
     assert list(EXPLANATIONS) == list(InputWarning)
-    assert [int(bit) for bit in InputWarning] == [1, 2, 4, 8, 16, 32]
+    assert [int(bit) for bit in InputWarning] == [1, 2, 4, 8, 16, 32, 64]
     assert all(meaning and action for meaning, action in EXPLANATIONS.values())

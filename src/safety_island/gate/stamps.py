@@ -21,17 +21,24 @@ STEP_BACK_SHARE = 0.5
 """Share of the age limit for which older stamps must keep advancing until they count as a clock
 that was set back rather than as samples that were overtaken."""
 
+STEP_TOLD_S = 1.0
+"""Time [s] for which a step of the sender's clock is told."""
+
 
 class StampGate:
     """Judges each sample by its stamp; told the time [s, monotonic], reads no clock.
 
     ``judge`` leaves everything as it was but the search for a clock that was set back; ``hold``
     takes the judged sample over. ``delay_s`` [s] is how much longer the held sample took than the
-    quickest one; ``steps_back`` counts clocks that were set back.
+    quickest one; ``steps_back`` counts clocks that were set back. One that was set forward shows
+    in a sample that is quicker than any before by more than the age limit: no delay can have been
+    that long, since what is delayed by more is refused.
     """
 
     def __init__(self, age_limit_s: float = math.inf) -> None:
         self.steps_back = 0
+        self.step_told_until = -math.inf
+        """Time [s, monotonic] until which a step of the sender's clock, either way, is told."""
         self.stamp_ns = 0
         """Stamp of the sample that was judged last [ns]."""
         self.limit_s = age_limit_s
@@ -40,6 +47,7 @@ class StampGate:
     def forget(self) -> None:
         """Hold nothing: the next sample is taken whatever its stamp."""
         self.delay_s = self._new_delay_s = 0.0
+        self._has_stepped = False
         self._held = b""
         self._held_ns = -1
         self._held_at = -math.inf
@@ -59,13 +67,19 @@ class StampGate:
             return SampleReason.DUPLICATE if same else SampleReason.STAMP_STANDS_STILL
         since_s = now - self._held_at
         self._new_delay_s = 0.0
+        self._has_stepped = False
         if since_s > BEGIN_ANEW_S:
             return None
         if step_ns < 0:
             return self._judge_older(stamp_ns, now)
-        growth_s = since_s * (1.0 - FORGET_RATE) - step_ns * 1e-9
-        self._new_delay_s = max(0.0, self.delay_s + growth_s)
-        return SampleReason.DELAYED if self._new_delay_s > self.limit_s else None
+        delay_s = self.delay_s + since_s * (1.0 - FORGET_RATE) - step_ns * 1e-9
+        if delay_s > self.limit_s:
+            return SampleReason.DELAYED
+        if delay_s > 0.0:
+            self._new_delay_s = delay_s
+        else:
+            self._has_stepped = delay_s < -self.limit_s
+        return None
 
     def _judge_older(self, stamp_ns: int, now: float) -> SampleReason | None:
         if now > self._older_at:  # of one tick the newest comes first, and it alone tells
@@ -76,7 +90,7 @@ class StampGate:
         searched_s = now - self._older_since
         if not is_sent_on_change and searched_s < self.limit_s * STEP_BACK_SHARE:
             return SampleReason.OLDER
-        self.steps_back += 1
+        self._has_stepped = True
         return None
 
     def repeats(self, data: bytes) -> bool:
@@ -85,6 +99,9 @@ class StampGate:
 
     def hold(self, data: bytes, now: float) -> None:
         """Take the sample that was judged last."""
+        if self._has_stepped:
+            self.steps_back += self.stamp_ns < self._held_ns
+            self.step_told_until = now + STEP_TOLD_S
         self._held, self._held_ns, self._held_at = data, self.stamp_ns, now
         self.delay_s = self._new_delay_s
         self._older_ns, self._older_at = -1, -math.inf

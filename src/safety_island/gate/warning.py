@@ -14,6 +14,7 @@ class InputWarning(IntFlag):
     DELAY = 8
     SECOND_PUBLISHER = 16
     PUBLISHER_CHANGED = 32
+    CLOCK_STEP = 64
 
 
 EXPLANATIONS: dict[InputWarning, tuple[str, str]] = {
@@ -40,6 +41,10 @@ EXPLANATIONS: dict[InputWarning, tuple[str, str]] = {
     InputWarning.PUBLISHER_CHANGED: (
         "its publisher changed within the last second",
         "nothing, when it was restarted on purpose",
+    ),
+    InputWarning.CLOCK_STEP: (
+        "its stamps jumped against the island's own clock within the last second",
+        "let the clocks of both machines be slewed, not set, while the vehicle drives",
     ),
 }
 """Warning -> what it means, what to do."""

@@ -12,7 +12,7 @@ DELAY_SHARE = 0.5
 
 _AGE, _RATE, _CLOCK = int(InputWarning.AGE), int(InputWarning.RATE), int(InputWarning.CLOCK)
 _DELAY, _SECOND = int(InputWarning.DELAY), int(InputWarning.SECOND_PUBLISHER)
-_CHANGED = int(InputWarning.PUBLISHER_CHANGED)
+_CHANGED, _STEP = int(InputWarning.PUBLISHER_CHANGED), int(InputWarning.CLOCK_STEP)
 
 
 def warnings(
@@ -33,4 +33,6 @@ def warnings(
         bits |= _SECOND
     if writers.changed(now):
         bits |= _CHANGED
+    if now <= stamps.step_told_until:
+        bits |= _STEP
     return bits

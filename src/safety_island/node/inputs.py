@@ -220,8 +220,14 @@ class Input:
 
     @property
     def is_suspect(self) -> bool:
-        """Whether rate, delay or publishers may be worth a warning."""
-        return self.rate.too_low or self.stamps.delay_s > 0.0 or self.writers.others > 0
+        """Whether rate, stamps or publishers may be worth a warning."""
+        stamps = self.stamps
+        return (
+            self.rate.too_low
+            or stamps.delay_s > 0.0
+            or self.writers.others > 0
+            or stamps.step_told_until > self.accepted_at  # a sample since then is too new for it
+        )
 
     def _accept(self, sample: Sample, now: float) -> bool:
         data = sample.data
