@@ -8,6 +8,7 @@ from random import Random
 import pytest
 
 from safety_island.gate.reason import SampleReason
+from safety_island.gate.warning import InputWarning
 from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State
 from tests.faults import wire
@@ -22,8 +23,12 @@ from tests.faults.checks import (
     stays_active,
     stays_latched,
     subject,
+    warned,
 )
 from tests.faults.scene import AGED, INPUTS, SLOW, Scene
+
+FAST_INPUTS = AGED[1:]
+"""Those that come at a rate that is known."""
 
 
 @BOTH
@@ -34,6 +39,23 @@ def test_row_01_random_loss_changes_no_state(period_s: float, percent: int, rand
     stays_active(scene, 30.0)
     scene.clear()
     stays_active(scene, 1.0)
+
+
+@BOTH
+def test_row_01_a_rate_that_is_too_low_is_warned_of(period_s: float, random: Random) -> None:
+    """Below 90 % of the usual 35.6 Hz: the stand-in's 40 Hz bear a loss of 20 % before that."""
+    scene = Scene(period_s).drive()
+    warnings = warned(scene)
+    stays_active(scene, 5.0)
+    scene.inject(wire.lose(0.01, random), *FAST_INPUTS)
+    stays_active(scene, 10.0)
+    assert not any(warnings.values())
+    scene.inject(wire.lose(0.4, random), *FAST_INPUTS)
+    stays_active(scene, 12.0)  # two windows of a hundred samples
+    assert all(warnings[key] & InputWarning.RATE for key in FAST_INPUTS)
+    scene.clear()
+    stays_active(scene, 6.0)
+    assert not any(scene.node.inputs.warnings)
 
 
 @BOTH
@@ -93,29 +115,45 @@ def test_row_03_a_partition_ends_the_output_and_is_named(period_s: float) -> Non
 @BOTH
 @pytest.mark.parametrize("delay_ms", [50, 100, 200, 300])
 def test_row_04_a_delay_within_the_limit_is_measured(period_s: float, delay_ms: int) -> None:
+    """It is warned of by the clocks, and beyond half the limit by what it was before.
+
+    Neither its begin nor its end is a step of a clock.
+    """
     scene = Scene(period_s).drive()
+    warnings = warned(scene)
     scene.inject(wire.delay(delay_ms / 1e3))
     stays_active(scene, 5.0)
     for key in AGED:
         found = scene.input(key).stamps.delay_s
         assert found == pytest.approx(delay_ms / 1e3, abs=period_s + 0.025), key
+    scene.clear()
+    stays_active(scene, 5.0)
+    for key in AGED:
+        assert bool(warnings[key]) is (delay_ms > 100), key
+        is_long = delay_ms / 1e3 > LIMIT_S[key] / 2
+        assert bool(warnings[key] & InputWarning.DELAY) is is_long, key
+        assert not warnings[key] & InputWarning.CLOCK_STEP
 
 
 @BOTH
 @pytest.mark.parametrize("key", AGED)
 def test_row_04_a_delay_beyond_the_limit_counts_as_lost(key: str, period_s: float) -> None:
     scene = Scene(period_s).drive()
+    warnings = warned(scene)
     since = scene.inject(wire.delay(LIMIT_S[key] + period_s + 0.1), key)
     silent_within(scene, since, bound(key, period_s), margin_s=5.0)
     assert scene.refused(key, SampleReason.DELAYED) > 0
     recovers(scene, Reason.INPUT_STALE, settle_s=2.0)
+    assert not warnings[key] & InputWarning.CLOCK_STEP
 
 
 @BOTH
 def test_row_05_of_a_burst_the_newest_counts(period_s: float) -> None:
     scene = Scene(period_s).drive()
+    warnings = warned(scene)
     scene.inject(wire.bursts(8), "odometry", "steering", "acceleration")
     stays_active(scene, 10.0)
+    assert not any(bits & InputWarning.CLOCK_STEP for bits in warnings.values())
     item = scene.input("odometry")
     assert item.superseded > item.accepted
     assert item.stamp_ns / 1e9 > scene.now - 8 * 0.025 - period_s
@@ -124,8 +162,10 @@ def test_row_05_of_a_burst_the_newest_counts(period_s: float) -> None:
 @BOTH
 def test_row_05_jitter_is_counted(period_s: float, random: Random) -> None:
     scene = Scene(period_s).drive()
+    warnings = warned(scene)
     scene.inject(wire.jitter(0.15, random))
     stays_active(scene, 10.0)
+    assert not any(bits & InputWarning.CLOCK_STEP for bits in warnings.values())
     item = scene.input("odometry")
     assert item.overtaken + item.refused[SampleReason.OLDER] > 0
 

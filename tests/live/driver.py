@@ -34,11 +34,12 @@ POINTS = make_points([(x - 5.0, 0.0, 1.0) for x in range(60)])
 class Driver:
     """Publishes every input but the ``absent`` ones; the mode when it changes, as Autoware does.
 
-    ``speed`` [m/s] NaN: odometry that is no number.
+    ``speed`` [m/s] NaN: odometry that is no number. ``ahead_ns``: of the clock of its stamps.
     """
 
     def __init__(self, domain: int, mode: Mode = Mode.AUTONOMOUS) -> None:
         self.speed = 1.0
+        self.ahead_ns = 0
         self.absent: set[TopicEntry] = set()
         self._clock = PosixClock()
         self._participant = Participant(domain, DdsConfig(interface="lo"), "main_compute")
@@ -86,7 +87,7 @@ class Driver:
         assert self._publishers[entry].write(data)
 
     def _stamp(self) -> Time:
-        return Time.from_nanoseconds(self._clock.wall_ns())
+        return Time.from_nanoseconds(self._clock.wall_ns() + self.ahead_ns)
 
     def close(self) -> None:
         """Leave the domain."""
