@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from safety_island.control.follower import TrajectoryFollower
 from safety_island.control.records import POINT, Records
+from safety_island.control.reference_positions import ensure
 from safety_island.control.status import Mode, MpcStatus, Refusal
 from tests.golden.harness import firmware
 
@@ -95,8 +96,10 @@ class Rig:
 
     @property
     def lat(self) -> Any:
-        """The state record of the lateral controller."""
-        return self.follower._lateral[0]
+        """The state record of the lateral controller, its reference worked out to the end."""
+        lat = self.follower._lateral[0]
+        ensure(lat, lat.ref_n)
+        return lat
 
     @property
     def qp(self) -> Any:

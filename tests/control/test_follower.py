@@ -11,6 +11,7 @@ import pytest
 from safety_island.control.follower import INPUT_NAMES, TrajectoryFollower
 from safety_island.control.limits import MAX_POINTS
 from safety_island.control.records import POINT
+from safety_island.control.reference_positions import ensure
 from safety_island.control.status import LongitudinalState, MpcStatus, Refusal
 from tests.control.follower_rig import driving, memory
 from tests.control.lateral_rig import PERIOD, START, line, make_points
@@ -65,7 +66,9 @@ def test_a_path_of_two_points_is_not_enough_until_there_was_a_longer_one() -> No
     follower.offer_trajectory(make_points([0.0, 50.0]), START)
     assert follower.step(START + PERIOD)
     assert follower.trace[0].stop_dist == pytest.approx(50.0)
-    assert follower._lateral[0].rx[: follower._lateral[0].ref_n].max() < 20.0
+    lat = follower._lateral[0]
+    ensure(lat, lat.ref_n)
+    assert lat.rx[: lat.ref_n].max() < 20.0
 
 
 def test_each_side_gets_what_the_other_knew_one_tick_ago() -> None:

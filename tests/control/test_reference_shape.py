@@ -29,6 +29,7 @@ def reference(x: Any, y: Any, forward: bool = True) -> Any:
         lat[name][:n] = values
         lat[name][n] = values[n - 1]
     lat.ref_n = n
+    lat.ready = n + 1
     lat.is_forward = forward
     return lat
 

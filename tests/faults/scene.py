@@ -18,7 +18,7 @@ from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State
 from safety_island.messages.outputs import Control
 from safety_island.node.controller import ControllerNode
-from safety_island.node.inputs import Input
+from safety_island.node.input import Input
 from safety_island.node.memory import MemoryDomain
 from safety_island.node.report import Outcome, TickReport
 from safety_island.params import IslandParameters, from_mapping

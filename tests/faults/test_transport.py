@@ -156,7 +156,7 @@ def test_row_05_of_a_burst_the_newest_counts(period_s: float) -> None:
     assert not any(bits & InputWarning.CLOCK_STEP for bits in warnings.values())
     item = scene.input("odometry")
     assert item.superseded > item.accepted
-    assert item.stamp_ns / 1e9 > scene.now - 8 * 0.025 - period_s
+    assert item.message.stamp.nanoseconds / 1e9 > scene.now - 8 * 0.025 - period_s
 
 
 @BOTH
@@ -200,7 +200,7 @@ def test_row_07_reordered_messages_never_lead_back(period_s: float) -> None:
     stamps = []
     for _ in range(round(10.0 / period_s)):
         stays_active(scene, period_s)
-        stamps.append(tuple(scene.input(key).stamp_ns for key in INPUTS))
+        stamps.append(tuple(scene.input(key).message.stamp.nanoseconds for key in INPUTS))
     assert all(a <= b for x, y in pairwise(stamps) for a, b in zip(x, y, strict=True))
     for key in AGED:
         assert scene.input(key).overtaken + scene.refused(key, SampleReason.OLDER) > 0

@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 
 from safety_island.control.follower import TrajectoryFollower
+from safety_island.control.reference_positions import ensure
 from tests.golden.harness import parameters_of, played, recorded
 
 DUMPS = Path(__file__).parent / "dumps"
@@ -40,7 +41,9 @@ def ours(name: str) -> tuple[Any, Any]:
         follower.step(now)
         if tick == int(last):
             break
-    return follower._lateral[0], follower._qp[0]
+    lat = follower._lateral[0]
+    ensure(lat, lat.ref_n)
+    return lat, follower._qp[0]
 
 
 def close(found: Any, recorded: Any, scale: float = 1.0) -> None:

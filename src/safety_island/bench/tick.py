@@ -115,7 +115,7 @@ def measure(
         for index in range(_WARM_UP_ROUNDS + rounds):
             measured = tick.round()
             solved = [yardstick.measure_us(problem) for _ in range(_YARDSTICKS_A_ROUND)]
-            whole = node_round(run, solver)
+            whole = node_round(solver)
             if index >= _WARM_UP_ROUNDS:
                 times.append(measured)
                 yards += solved

@@ -42,7 +42,7 @@ def measure(
     times: list[float] = []
     with quiet():
         for index in range(_WARM_UP_ROUNDS + rounds):
-            measured = node_round(run, solver)
+            measured = node_round(solver)
             if index >= _WARM_UP_ROUNDS:
                 times += measured
             if report is not None:

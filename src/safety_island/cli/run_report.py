@@ -11,8 +11,8 @@ from safety_island.cli.run_can import CanSide
 from safety_island.control.records import Records
 from safety_island.control.status import LongitudinalState, MpcStatus
 from safety_island.node import Outcome, TickReport
+from safety_island.node.input import Input
 from safety_island.node.input_set import InputSet
-from safety_island.node.inputs import Input
 from safety_island.platform import Clock, Logger
 
 TICK_TIMES = 100_000
@@ -129,7 +129,8 @@ def percentile(ordered: list[float], percent: float) -> float | None:
 def sample_ages(inputs: Sequence[Input], wall_ns: int) -> dict[str, float]:
     """Time [s] since the newest sample of each input was sent, by wall clock; inf: none came."""
     return {
-        item.name: (wall_ns - item.sent_ns) / 1e9 if item.sent_ns else math.inf for item in inputs
+        item.name: (wall_ns - item.taken.source_timestamp_ns) / 1e9 if item.taken else math.inf
+        for item in inputs
     }
 
 

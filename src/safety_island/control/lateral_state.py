@@ -47,6 +47,8 @@ SOURCE_COLUMNS = [
 
 REFERENCE_COLUMNS = [
     ("ref_n", "i8"),  # points of the reference, without closing duplicates; 0: none yet
+    ("ready", "i8"),  # how many of them, the first closing duplicate counted, are worked out
+    ("cursor", "i8"),  # the interval of the source in which that ended
     ("rs", "f8", (_LONGEST,)),  # arc length at which each stands [m]
     ("rx", "f8", (_LONGEST,)),  # position [m]
     ("ry", "f8", (_LONGEST,)),

@@ -16,6 +16,7 @@ from safety_island.control.prediction import (
     sample_horizon,
     step_at,
 )
+from safety_island.control.reference_positions import ensure
 from safety_island.control.reference_shape import (
     nearest_on_reference,
     segment_on_reference,
@@ -52,6 +53,7 @@ def locate(params, inputs, lat, trace):
     )
     lat.segment = segment_on_reference(lat, lat.nearest, inputs.x, inputs.y)
     a = lat.segment
+    ensure(lat, a + 2)  # the yaw at the segment's end reads the point behind
     dx = lat.rx[a + 1] - lat.rx[a]
     dy = lat.ry[a + 1] - lat.ry[a]
     length_squared = dx * dx + dy * dy
@@ -140,6 +142,8 @@ def prepare_mpc(params, inputs, lat, qp, trace, now):
     horizon = params.mpc_prediction_horizon
     delay = lat.delay_n * params.ctrl_period
     fill_window(params, lat, inputs.vx, ratio, delay, horizon)
+    reach = max(params.curvature_smoothing_num_traj, params.curvature_smoothing_num_ref_steer)
+    ensure(lat, max(lat.segment + lat.window, reach) + reach)
     trace.nearest_time = lat.nearest_time
     trace.prediction_dt = lat.prediction_dt
     _compensate_delay(params, lat)

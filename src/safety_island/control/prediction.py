@@ -7,11 +7,14 @@ import math
 
 from safety_island.control.geometry import clip
 from safety_island.control.kernel import kernel
+from safety_island.control.reference_positions import ensure
 from safety_island.control.reference_shape import curvature_at
 
 _EPSILON = 2.220446049250313e-16
 _TAIL = 100.0  # seconds that the closing duplicate stands still
 _FADED = 1e-6  # m/s
+_SLOWEST = 0.1  # m/s, at which the time of a step is taken
+_SHORTEST = 1e-4  # s, that a step takes
 
 
 @kernel
@@ -35,44 +38,14 @@ def _filtered_speed(current, target, ds, tau, limit):
 
 
 @kernel
-def start_window(lat, segment):
-    """Begin the window at ``segment``."""
-    lat.segment = segment
-    lat.wt[0] = 0.0
-    lat.window = 1
-
-
-@kernel
-def extend_window(params, lat, speed):
-    """Add the next point of the velocity-filtered path; returns its 2-D step [m]."""
-    w = lat.window
-    i = lat.segment + w
-    last = lat.ref_n + 1  # the second closing duplicate
-    if i == last:
-        lat.wv[w] = 0.0
-        lat.wt[w] = lat.wt[w - 1] + _TAIL
-        lat.window = w + 1
-        return 0.0
+def _step_to(lat, i):
+    """2-D and 3-D length [m] of the step to reference point ``i``."""
     dx = lat.rx[i] - lat.rx[i - 1]
     dy = lat.ry[i] - lat.ry[i - 1]
-    ds_squared = dx * dx + dy * dy
-    ds = math.sqrt(ds_squared)
     dz = lat.rz[i] - lat.rz[i - 1]
-    if w == 1:
-        lat.wv[0] = speed
-        lat.wv[1] = speed
-    else:
-        lat.wv[w] = _filtered_speed(
-            lat.wv[w - 1],
-            lat.rv[i],
-            ds,
-            params.mpc_velocity_time_constant,
-            params.mpc_acceleration_limit,
-        )
-    dt = math.sqrt(ds_squared + dz * dz) / max(abs(lat.wv[w - 1]), 0.1)
-    lat.wt[w] = lat.wt[w - 1] + max(dt, 1e-4)
-    lat.window = w + 1
-    return ds
+    square = dx * dx + dy * dy
+    ds = math.sqrt(square)
+    return ds, ds if dz == 0.0 else math.sqrt(square + dz * dz)
 
 
 @kernel
@@ -80,28 +53,51 @@ def fill_window(params, lat, speed, ratio, delay, horizon):
     """Filter speed and time as far as the horizon needs; set nearest_time and prediction_dt.
 
     ``ratio`` is the ego's place in the segment (or -1: it stands at the nearest point). The horizon
-    spans at least min_prediction_length [m] and (N - 1) prediction_dt [s].
+    spans at least min_prediction_length [m] and (N - 1) prediction_dt [s]. The path ends with the
+    second closing duplicate.
     """
-    start_window(lat, lat.segment)
+    tau = params.mpc_velocity_time_constant
+    limit = params.mpc_acceleration_limit
     end = lat.ref_n + 2 - lat.segment
     nearest = lat.nearest - lat.segment
     total = 0.0
     t_end = math.inf
+    # the point before, held in locals: each depends on it, and memory would take its time
+    v = speed
+    t = 0.0
+    lat.wv[0] = v
+    lat.wt[0] = t
+    lat.window = 1
+    ready = 0
     while lat.window < end:
         w = lat.window
-        ds = extend_window(params, lat, speed)
+        if lat.segment + w >= ready:
+            ready = ensure(lat, lat.segment + w)
+        ds = 0.0
+        t_before = t
+        if w == end - 1:
+            v = 0.0
+            t += _TAIL
+        else:
+            ds, length = _step_to(lat, lat.segment + w)
+            t += max(length / max(abs(v), _SLOWEST), _SHORTEST)
+            if w > 1:
+                v = _filtered_speed(v, lat.rv[lat.segment + w], ds, tau, limit)
+        lat.wv[w] = v
+        lat.wt[w] = t
+        lat.window = w + 1
         if w == 1:
-            lat.nearest_time = lat.wt[nearest] if ratio < 0.0 else ratio * lat.wt[1]
+            lat.nearest_time = lat.wt[nearest] if ratio < 0.0 else ratio * t
         if t_end == math.inf and w > nearest:
             total += ds
             if total > params.mpc_min_prediction_length:
                 part = (params.mpc_min_prediction_length - (total - ds)) / ds
-                target = lat.wt[w - 1] + (lat.wt[w] - lat.wt[w - 1]) * part
+                target = t_before + (t - t_before) * part
                 t_end = _set_horizon(params, lat, target, delay, horizon)
-        if lat.wt[w] >= t_end:
+        if t >= t_end:
             return
     if t_end == math.inf:
-        _set_horizon(params, lat, lat.wt[end - 1] - _TAIL, delay, horizon)
+        _set_horizon(params, lat, t - _TAIL, delay, horizon)
 
 
 @kernel

@@ -1,7 +1,8 @@
 """The reference path of the MPC: the accepted trajectory, resampled by arc length at the ego.
 
-Only positions and speeds are computed for the whole path; yaw and curvature are worked out
-point by point where they are needed (``reference_shape``), which gives the same numbers.
+Only the stations are placed for the whole path. Positions and speeds (``reference_positions``), yaw
+and curvature (``reference_shape``) are worked out as far as they are asked for, which gives the
+same numbers.
 """
 
 import math
@@ -10,6 +11,7 @@ from safety_island.control.geometry import clip, normalize_angle, yaw_of
 from safety_island.control.kernel import kernel
 from safety_island.control.limits import MAX_REFERENCE
 from safety_island.control.points import nearest_index, offset_along, segment_of
+from safety_island.control.reference_positions import close, ensure, extend, work_out
 from safety_island.control.reference_smoothing import smooth_reference
 from safety_island.control.spline import (
     fit_space_curve,
@@ -28,8 +30,21 @@ _YAW_LENGTH = 3.0
 
 
 @kernel
+def _is_point(points, n):
+    """Whether a trajectory is about as short as a micrometre."""
+    length = 0.0
+    for i in range(1, n):
+        length += abs(points[i].x - points[i - 1].x) + abs(points[i].y - points[i - 1].y)
+        if length > 4e-6:
+            return False
+    return True
+
+
+@kernel
 def accept_source(points, n, lat):
     """Take over a received trajectory of n >= 3 points: arc length and spline coefficients."""
+    if _is_point(points, n):  # it will make no reference, and the one in force stays
+        ensure(lat, lat.ref_n)
     px = lat.px
     py = lat.py
     pz = lat.pz
@@ -91,56 +106,6 @@ def _place_stations(lat, start, step):
 
 
 @kernel
-def _evaluate_positions(lat, count):
-    """Fill x, y, z and speed of the reference: cubic splines for positions, linear for speed."""
-    arc = lat.arc
-    px = lat.px
-    py = lat.py
-    pz = lat.pz
-    pv = lat.pv
-    mx = lat.mx
-    my = lat.my
-    mz = lat.mz
-    rs = lat.rs
-    rx = lat.rx
-    ry = lat.ry
-    rz = lat.rz
-    rv = lat.rv
-    n = lat.source_n
-    i = 0
-    j = 0
-    while i < count:
-        j = interval_from(arc, n, j, rs[i])
-        end = math.inf if j == n - 2 else arc[j + 1]
-        h = arc[j + 1] - arc[j]
-        inverse = 1.0 / h
-        sixth = h / 6.0
-        ax = (mx[j + 1] - mx[j]) * inverse / 6.0
-        ay = (my[j + 1] - my[j]) * inverse / 6.0
-        az = (mz[j + 1] - mz[j]) * inverse / 6.0
-        bx = mx[j] / 2.0
-        by = my[j] / 2.0
-        bz = mz[j] / 2.0
-        cx = (px[j + 1] - px[j]) * inverse - sixth * (2.0 * mx[j] + mx[j + 1])
-        cy = (py[j + 1] - py[j]) * inverse - sixth * (2.0 * my[j] + my[j + 1])
-        cz = (pz[j + 1] - pz[j]) * inverse - sixth * (2.0 * mz[j] + mz[j + 1])
-        slope = (pv[j + 1] - pv[j]) * inverse
-        # held in locals: the compiler must suppose that the stores below change the arrays
-        s0 = arc[j]
-        x0 = px[j]
-        y0 = py[j]
-        z0 = pz[j]
-        v0 = pv[j]
-        while i < count and rs[i] <= end:
-            t = rs[i] - s0
-            rx[i] = ((ax * t + bx) * t + cx) * t + x0
-            ry[i] = ((ay * t + by) * t + cy) * t + y0
-            rz[i] = ((az * t + bz) * t + cz) * t + z0
-            rv[i] = v0 + slope * t
-            i += 1
-
-
-@kernel
 def _detect_direction(lat, count):
     """Set the driving direction from the yaw of the first point; kept for a single point."""
     for i in range(min(count, 2)):
@@ -149,34 +114,6 @@ def _detect_direction(lat, count):
     if count >= 2:
         azimuth = math.atan2(lat.ry[1] - lat.ry[0], lat.rx[1] - lat.rx[0])
         lat.is_forward = abs(normalize_angle(lat.short_yaw[0] - azimuth)) < math.pi / 2.0
-
-
-@kernel
-def _extend(lat, count, step):
-    """Append 10 m of points along the received trajectory's last yaw, at 10 m/s."""
-    sign = 1.0 if lat.is_forward else -1.0
-    dx = sign * step * math.cos(lat.source_yaw_end)
-    dy = sign * step * math.sin(lat.source_yaw_end)
-    for _ in range(int(10.0 / step)):
-        if count >= MAX_REFERENCE:
-            break
-        lat.rx[count] = lat.rx[count - 1] + dx
-        lat.ry[count] = lat.ry[count - 1] + dy
-        lat.rz[count] = lat.rz[count - 1]
-        lat.rv[count] = 10.0
-        count += 1
-    return count
-
-
-@kernel
-def _close(lat, count):
-    """End the path: speed zero at the last point, and the first closing duplicate."""
-    lat.rv[count - 1] = 0.0
-    lat.rx[count] = lat.rx[count - 1]
-    lat.ry[count] = lat.ry[count - 1]
-    lat.rz[count] = lat.rz[count - 1]
-    lat.rv[count] = 0.0
-    lat.ref_n = count
 
 
 @kernel
@@ -198,10 +135,17 @@ def update_reference(params, points, inputs, lat):
     count = _place_stations(lat, start, params.traj_resample_dist)
     if count == 0:  # shorter than a micrometre: nothing to follow, the old reference stays
         return
-    _evaluate_positions(lat, count)
+    lat.ref_n = count
+    lat.ready = lat.cursor = 0
+    smooths = params.enable_path_smoothing and count > 2 * params.path_filter_moving_ave_num
+    if not smooths and not params.extend_trajectory_for_end_yaw_control:
+        ensure(lat, 1)
+        _detect_direction(lat, count)
+        return
+    work_out(lat, count)
     _detect_direction(lat, count)
-    if params.enable_path_smoothing and count > 2 * params.path_filter_moving_ave_num:
+    if smooths:
         smooth_reference(lat, count, params.path_filter_moving_ave_num)
     if params.extend_trajectory_for_end_yaw_control:
-        count = _extend(lat, count, params.traj_resample_dist)
-    _close(lat, count)
+        count = extend(lat, count, params.traj_resample_dist)
+    close(lat, count)

@@ -1,9 +1,13 @@
-"""Yaw, curvature and the ego's place on the reference path, computed where they are asked for."""
+"""Yaw, curvature and the ego's place on the reference path, computed where they are asked for.
+
+Yaw and curvature read points around the one that they are asked for, which must be worked out.
+"""
 
 import math
 
 from safety_island.control.geometry import normalize_angle
 from safety_island.control.kernel import kernel
+from safety_island.control.reference_positions import ensure
 
 
 @kernel
@@ -44,7 +48,10 @@ def _nearest_within(lat, x, y, yaw, dist_limit, yaw_limit):
     best_squared = math.inf
     rx = lat.rx
     ry = lat.ry
+    ready = 0
     for i in range(lat.ref_n + 1):
+        if i + 1 >= ready:  # the yaw reads the point behind
+            ready = ensure(lat, i + 1)
         dx = rx[i] - x
         dy = ry[i] - y
         squared = dx * dx + dy * dy
@@ -62,6 +69,7 @@ def _nearest_within(lat, x, y, yaw, dist_limit, yaw_limit):
 
 @kernel
 def _nearest_global(lat, x, y):
+    ensure(lat, lat.ref_n)
     best = 0
     best_squared = math.inf
     rx = lat.rx
@@ -97,6 +105,7 @@ def segment_on_reference(lat, nearest, x, y):
     """
     if nearest <= 0:
         return 0
+    ensure(lat, nearest + 1)
     dx = lat.rx[nearest + 1] - lat.rx[nearest]
     dy = lat.ry[nearest + 1] - lat.ry[nearest]
     if abs(dx) < 1e-8 and abs(dy) < 1e-8:

@@ -7,6 +7,9 @@ from collections import deque
 WINDOW_S = 1.0
 """Time [s] within which changes of a publisher are counted."""
 
+MOST_OTHERS = 255
+"""Publishers beside the owner that are counted: what one byte of the status holds."""
+
 UNKNOWN = bytes(16)
 """GUID of a publisher that was gone before its sample was looked at."""
 
@@ -33,7 +36,7 @@ class Writers:
         self.alive = alive
         if self.owner not in alive:
             self.owner = b""
-        self.others = len(alive) - bool(alive)
+        self.others = min(len(alive) - bool(alive), MOST_OTHERS)
 
     def takes(self, guid: bytes) -> bool:
         """Whether a sample of this publisher is taken; the first one becomes the owner."""

@@ -45,7 +45,8 @@ class CommandCheck:
         """Judge a command at ``now`` [s, monotonic]; speed [m/s] and steering [rad] as measured."""
         self.sequence += 1
         stamp, other, *values, _ = command
-        proposal = Proposal(now, stamp if stamp < other else other, self.sequence, *values)
+        oldest = other if other < stamp else stamp
+        proposal = tuple.__new__(Proposal, (now, oldest, self.sequence, *values))
         decision = self._guard.check(proposal, speed, steering, engaged)
         self.verdict, self.limits = decision.verdict, decision.limits
         if decision.verdict is _PASSED:

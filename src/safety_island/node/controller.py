@@ -131,7 +131,8 @@ class ControllerNode(Node):
             outcome, detail = Outcome.FAULT, describe(error)
             self.logger.error("the tick failed: %s", detail, throttled=True)
             self.life_cycle.fault()
-        self.inputs.warn(now, self.clock.wall_ns())
+            self.inputs.measure(now)
+        self.inputs.warn(now)
         if self.sender.command is None:
             self.sender.withdraw()
         self._ticks += 1
@@ -149,7 +150,7 @@ class ControllerNode(Node):
             (self.clock.monotonic_ns() - start_ns) / 1e9,
             lateral_ns / 1e9,
             longitudinal_ns / 1e9,
-            tuple([now - item.accepted_at for item in self.inputs.items]),
+            tuple(self.inputs.ages_s),
             refused,
             self.sender.command,
         )
@@ -167,8 +168,8 @@ class ControllerNode(Node):
             self.logger.warning("the process stood still: it begins anew", throttled=True)
             self.inputs.drop()
         self.identity.look(now)
-        last = self._last_tick
-        return self.inputs.take(now, now - self._period_s if last is None else last)
+        since = now - self._period_s if self._last_tick is None else self._last_tick
+        return self.inputs.take(now, since, self.clock.wall_ns())
 
     def _blocked(self, now: float) -> Blocked:
         """Return what forbids to send, before the controllers are asked."""

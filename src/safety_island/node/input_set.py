@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from operator import attrgetter, gt
 from typing import NamedTuple
 
 from safety_island.control.status import Mode
@@ -13,7 +14,8 @@ from safety_island.gate.writers import WINDOW_S
 from safety_island.life_cycle.reason import Reason
 from safety_island.messages.inputs import Odometry, OperationMode, Steering
 from safety_island.node.follower import InputFollower
-from safety_island.node.inputs import INPUTS, Input
+from safety_island.node.input import Input
+from safety_island.node.inputs import INPUTS
 from safety_island.node.transport import Transport
 from safety_island.platform.interfaces import Logger
 
@@ -23,6 +25,10 @@ OPERATION_MODE = 4
 """Places in the table of inputs."""
 
 _NONE, _AUTONOMOUS = Reason.NONE, int(Mode.AUTONOMOUS)
+_PLACES = range(len(INPUTS))
+_SIGNS = attrgetter("rate.too_low", "stamps.delay_s", "writers.others")
+"""Of an input: what is not zero when rate, delay or publishers may be worth a warning."""
+_CLOCK_STEP, _CLOCK_GAP = attrgetter("stamps.step_told_until"), attrgetter("clock_gap_s")
 
 NO_SUBJECT = 255
 """Stands for: the reason is about no input."""
@@ -60,13 +66,17 @@ class InputSet:
         self._transport = transport
         self._logger = logger
         self._keeps_first = params.second_publisher == "keep_first"
-        self._warning_clock_ns = params.clock_warning * 1e9
+        self._age_warnings = [item.age_warning_s for item in self.items]
+        # the operation mode was stamped when it changed
+        self._clock_warnings = [params.clock_warning] * OPERATION_MODE + [math.inf]
+        self.ages_s = [math.inf] * len(self.items)
+        """Age of each, as of the last ``measure``."""
         self.warnings = [0] * len(self.items)
         """Bits of InputWarning for each input, as of the last tick."""
         self.are_complete = False
         """Whether a sample of every input was accepted."""
         self._unsettled_until = -math.inf
-        self._limited = [(i, item, item.age_limit_s) for i, item in enumerate(self.items[:-1])]
+        self._age_limits = [item.age_limit_s for item in self.items]
 
     def discover(self, now: float) -> None:
         """Look which publishers live; to be called when some came or went."""
@@ -79,12 +89,17 @@ class InputSet:
         if not self._mode.writers.owner:
             self._mode.hand_over(now)  # what is sent on change is not sent again
 
-    def take(self, now: float, since: float) -> int:
+    def take(self, now: float, since: float, wall_ns: int) -> int:
         """Take what came since the last tick; return how many samples were refused."""
         refused = 0
         for item in self.items:
-            refused += item.take(now, since)
+            refused += item.take(now, since, wall_ns)
+        self.measure(now)
         return refused
+
+    def measure(self, now: float) -> None:
+        """Take the age of each."""
+        self.ages_s = [now - item.accepted_at for item in self.items]
 
     def drop(self) -> None:
         """Drop what has waited while the process stood still; the operation mode stays."""
@@ -100,9 +115,8 @@ class InputSet:
             return found
         if not self._keeps_first and (found := self._shared()):
             return found
-        for _, item, limit_s in self._limited:
-            if now - item.accepted_at > limit_s:
-                return self._stale(now)
+        if any(map(gt, self.ages_s, self._age_limits)):
+            return self._stale()
         return NOT_BLOCKED
 
     def _missing(self) -> Blocked | None:
@@ -124,35 +138,46 @@ class InputSet:
                 return Blocked(Reason.SECOND_PUBLISHER, index)
         return None
 
-    def _stale(self, now: float) -> Blocked:
-        stale = [i for i, item, limit_s in self._limited if now - item.accepted_at > limit_s]
-        if len(stale) == len(self._limited):
+    def _stale(self) -> Blocked:
+        limited = list(map(gt, self.ages_s, self._age_limits))[:OPERATION_MODE]
+        if all(limited):
             return Blocked(Reason.PARTITION)
-        return Blocked(Reason.INPUT_STALE, stale[0])
+        return Blocked(Reason.INPUT_STALE, limited.index(True))
 
     def missing(self) -> list[str]:
         """Name the inputs of which no sample was ever accepted."""
         return [item.name for item in self.items if not item.accepted]
 
-    def warn(self, now: float, wall_ns: int) -> None:
+    def warn(self, now: float) -> None:
         """Look which warnings stand, and log those that are new."""
-        found = [0] * len(self.items)
-        for index, item in enumerate(self.items):
-            age_s = now - item.accepted_at
-            is_old = age_s > item.age_warning_s
-            # A stamp is as old as its sample; the operation mode was stamped when it changed.
-            is_off = abs(wall_ns - item.stamp_ns) > self._warning_clock_ns + age_s * 1e9
-            is_off = is_off and item is not self._mode
-            if is_old or is_off or item.is_suspect or now <= self._unsettled_until:
-                if item.message is not None:
-                    about = item.stamps, item.writers, item.rate
-                    found[index] = warnings(now, *about, is_old, is_off)
+        found = self.warnings if self._is_calm(now) else [self._warnings(i, now) for i in _PLACES]
         if found != self.warnings:
             self._tell(found)
 
+    def _is_calm(self, now: float) -> bool:
+        """Whether nothing stands and nothing may: the usual case, told without a look at each."""
+        items = self.items
+        return not (
+            now <= self._unsettled_until
+            or any(self.warnings)
+            or any(map(any, map(_SIGNS, items)))
+            or max(map(_CLOCK_STEP, items)) >= now
+            or any(map(gt, self.ages_s, self._age_warnings))
+            or any(map(gt, map(_CLOCK_GAP, items), self._clock_warnings))
+        )
+
+    def _warnings(self, index: int, now: float) -> int:
+        item = self.items[index]
+        if item.message is None:
+            return 0
+        is_old = self.ages_s[index] > self._age_warnings[index]
+        is_off = item.clock_gap_s > self._clock_warnings[index]
+        return warnings(now, item.stamps, item.writers, item.rate, is_old, is_off)
+
     def _tell(self, found: list[int]) -> None:
-        before, self.warnings = self.warnings, found
-        for item, old, new in zip(self.items, before, found, strict=True):
+        self.warnings = found
+        for item, new in zip(self.items, found, strict=True):
+            old, item.warnings = item.warnings, new
             for bit in InputWarning(new & ~old):
                 what = EXPLANATIONS[bit][0]
                 site = f"{item.topic} {bit.name}"

@@ -2,13 +2,27 @@
 
 from __future__ import annotations
 
-from safety_island.messages.status import NO_VALUE, NO_WRITER, StatusWriter
-from safety_island.node.inputs import Input
+from operator import attrgetter
 
-_COUNTS = (
-    "accepted", "received", "superseded", "refused_in_a_row", "age", "age_limit",
-    "transport_delay", "warnings", "last_refusal", "other_writers",
-)  # fmt: skip
+from safety_island.messages.status import NO_WRITER, StatusWriter
+from safety_island.node.input import Input
+
+_COUNTS = {
+    "accepted": "accepted",
+    "received": "subscription.received",
+    "superseded": "superseded",
+    "refused_in_a_row": "refused_in_a_row",
+}
+_REST = {
+    "age_limit": "age_limit_s",
+    "transport_delay": "stamps.delay_s",
+    "warnings": "warnings",
+    "last_refusal": "last_refusal",
+    "other_writers": "writers.others",
+}
+"""Field of the status -> attribute of Input, before and behind its age."""
+
+_counts, _rest = attrgetter(*_COUNTS.values()), attrgetter(*_REST.values())
 
 
 class InputStatus:
@@ -16,26 +30,14 @@ class InputStatus:
 
     def __init__(self, item: Input, writer: StatusWriter, place: int) -> None:
         self._item, self._writer, self._place = item, writer, place
-        self._pack = writer.pack_input(place, *_COUNTS)
+        self._pack = writer.pack_input(place, *_COUNTS, "age", *_REST)
         self._guid = NO_WRITER
         self._refused = 0
 
-    def fill(self, now: float, warnings: int) -> None:
-        """Write age, counts and publisher at ``now`` [s, monotonic]; bits of InputWarning."""
+    def fill(self, age_s: float) -> None:
+        """Write age, counts and publisher."""
         item = self._item
-        last = item.last_refusal
-        self._pack(
-            item.accepted,
-            item.subscription.received,
-            item.superseded,
-            item.refused_in_a_row,
-            now - item.accepted_at,
-            item.age_limit_s,
-            item.stamps.delay_s,
-            warnings,
-            NO_VALUE if last is None else last,
-            min(item.writers.others, 255),
-        )
+        self._pack(*_counts(item), age_s, *_rest(item))
         if item.writer_guid != self._guid:
             self._guid = item.writer_guid
             self._writer.set_writer(self._place, self._guid)

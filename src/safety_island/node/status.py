@@ -68,8 +68,8 @@ class StatusTopic(TopicWriter):
     def _fill(self, report: TickReport) -> None:
         sec, nanosec = divmod(self._node.clock.wall_ns(), NANOSECONDS)
         self._stamp.sec[0], self._stamp.nanosec[0] = sec, nanosec
-        for item, bits in zip(self._inputs, self._node.inputs.warnings, strict=True):
-            item.fill(report.now, bits)
+        for item, age_s in zip(self._inputs, report.ages_s, strict=True):
+            item.fill(age_s)
         if report.lateral_time_s:
             self._trace.read()
         else:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 import numpy as np
 
@@ -52,7 +52,8 @@ class Replay:
         }
         # The firmware takes the operation mode as received from the beginning, and nothing else.
         start = float(run.state["t"][0]) - parameters.node.ctrl_period
-        self._play_mode(Time.from_seconds(start), _STOP, True)
+        key, data = _mode(Time.from_seconds(start), _STOP, True)
+        self._write[key](data)
         self.node.tick(start)
 
     def tick(self, tick: int) -> Records | None:
@@ -61,33 +62,48 @@ class Replay:
 
     def deliver(self, tick: int) -> float:
         """Move the clock to a row and deliver its messages; return its time [s]."""
+        return self.deliver_messages(tick, messages(self.run, tick))
+
+    def deliver_messages(self, tick: int, found: Iterable[Message]) -> float:
+        """Deliver what ``messages`` gave of a row, made before."""
         now = float(self.run.state["t"][tick])
         self.platform.clock.advance_to_ns(round(now * 1e9))
-        if self.run.has_new_trajectory(tick):
-            stamp = Time.from_seconds(float(self.run.traj_select[tick, 3]))
-            points = self.run.trajectory(tick)
-            self._write["trajectory"](encode_trajectory(stamp, "map", points))
-        self._play(tick, Time.from_seconds(now))
+        for key, data in found:
+            self._write[key](data)
         return now
 
-    def _play(self, tick: int, stamp: Time) -> None:
-        row = {name: float(column[tick]) for name, column in self.run.state.items()}
-        mask = int(self.run.deliver_mask[tick])
-        if mask & ODOMETRY:
-            values = {name: row[name] for name in _POSE_AND_SPEED}
-            odometry = codec.Odometry(stamp, "map", "base_link", **values, vz=0.0, wx=0.0, wy=0.0)
-            self._write["odometry"](codec.encode_odometry(odometry))
-        if mask & STEERING:
-            self._write["steering"](codec.encode_steering(codec.Steering(stamp, row["steer"])))
-        if mask & ACCELERATION:
-            acceleration = codec.Acceleration(stamp, "base_link", row["ax"], *(0.0,) * 5)
-            self._write["acceleration"](codec.encode_acceleration(acceleration))
-        if mask & OPERATION_MODE:
-            self._play_mode(stamp, int(row["mode"]), bool(row["enabled"]))
 
-    def _play_mode(self, stamp: Time, mode: int, enabled: bool) -> None:
-        message = codec.OperationMode(stamp, mode, enabled)
-        self._write["operation_mode"](codec.encode_operation_mode(message))
+Message = tuple[str, bytes]
+"""Key of an input in the table of topics, and the bytes of one message."""
+
+
+def messages(run: Recording, tick: int) -> list[Message]:
+    """Return the messages that came before a tick."""
+    found = []
+    if run.has_new_trajectory(tick):
+        stamp = Time.from_seconds(float(run.traj_select[tick, 3]))
+        found.append(("trajectory", encode_trajectory(stamp, "map", run.trajectory(tick))))
+    row = {name: float(column[tick]) for name, column in run.state.items()}
+    stamp = Time.from_seconds(row["t"])
+    mask = int(run.deliver_mask[tick])
+    if mask & ODOMETRY:
+        values = {name: row[name] for name in _POSE_AND_SPEED}
+        odometry = codec.Odometry(stamp, "map", "base_link", **values, vz=0.0, wx=0.0, wy=0.0)
+        found.append(("odometry", codec.encode_odometry(odometry)))
+    if mask & STEERING:
+        steering = codec.Steering(stamp, row["steer"])
+        found.append(("steering", codec.encode_steering(steering)))
+    if mask & ACCELERATION:
+        acceleration = codec.Acceleration(stamp, "base_link", row["ax"], *(0.0,) * 5)
+        found.append(("acceleration", codec.encode_acceleration(acceleration)))
+    if mask & OPERATION_MODE:
+        found.append(_mode(stamp, int(row["mode"]), bool(row["enabled"])))
+    return found
+
+
+def _mode(stamp: Time, mode: int, enabled: bool) -> Message:
+    message = codec.OperationMode(stamp, mode, enabled)
+    return "operation_mode", codec.encode_operation_mode(message)
 
 
 def replay(

@@ -1,0 +1,171 @@
+"""One input of the controller node at work.
+
+The way of a sample: of those that came since the last tick the newest, decode, gate (publisher,
+stamp, frame), offer (every value). Whatever refuses a sample is counted here by its reason, and
+leaves the controllers as they were.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Sequence
+from functools import partial
+from typing import Any
+
+from safety_island.gate.content import ContentGate
+from safety_island.gate.newest import newest_first, overtaken
+from safety_island.gate.params import GateParams
+from safety_island.gate.rate import RateMeter
+from safety_island.gate.reason import SampleReason
+from safety_island.gate.stamps import StampGate
+from safety_island.gate.writers import Writers
+from safety_island.messages.errors import DecodeError
+from safety_island.messages.status import NO_VALUE
+from safety_island.node.follower import InputFollower
+from safety_island.node.inputs import InputSpec
+from safety_island.node.report import describe
+from safety_island.node.transport import Sample, Subscription
+from safety_island.platform.interfaces import Logger
+
+
+class Input:
+    """One input at work: its subscription, what became of its samples, and its age.
+
+    The moment of receipt lies between two ticks, and only the island's own clock counts, so an age
+    runs from the earlier tick: the output ends in time even when the sample came at once after it.
+    """
+
+    def __init__(
+        self,
+        spec: InputSpec,
+        subscription: Subscription,
+        follower: InputFollower,
+        logger: Logger,
+        params: GateParams,
+    ) -> None:
+        self.name = spec.name
+        self.topic = spec.topic.name
+        self.subscription = subscription
+        self.stamps = StampGate(spec.age_limit_s(params))
+        self.writers = Writers(params.writer_changes)
+        self.rate = RateMeter(spec.topic.rate_hz)
+        self.age_limit_s = spec.age_limit_s(params)
+        self.age_warning_s = spec.age_warning_s(params)
+        self.warnings = 0
+        """Bits of InputWarning, as of the last tick."""
+        self.accepted = 0
+        self.superseded = 0
+        """Samples passed over for a newer one."""
+        self.overtaken = 0
+        """Samples that arrived after a newer one."""
+        self.refused: Counter[SampleReason] = Counter()
+        """Samples refused, by reason."""
+        self.refused_count = self.refused_in_a_row = 0
+        self.last_refusal: int = NO_VALUE
+        """The SampleReason of the last one, NO_VALUE when none was refused."""
+        self.accepted_at = -math.inf
+        """Monotonic time [s] before which the sample in force was not received."""
+        self.clock_gap_s = 0.0
+        """Between its stamp and the wall clock, beyond the time that it may have waited here."""
+        self.taken: Sample | None = None
+        """The sample that was looked at last."""
+        self.writer_guid = b""
+        """Its writer."""
+        self.source_guid = b""
+        """Writer of the sample in force."""
+        self.message: Any = None
+        """The sample in force, decoded."""
+        self._other: Sample | None = None
+        """The newest sample of a publisher that the island does not keep to."""
+        self._decode = spec.decoder(follower)
+        self._check = None if spec.check is None else partial(spec.check, ContentGate(params))
+        self._offer = partial(spec.offer, follower)
+        self._logger = logger
+
+    def take(self, now: float, since: float, wall_ns: int) -> int:
+        """Take what came after ``since`` [s], the tick before; return how many were refused."""
+        samples = self.subscription.take_all()
+        if not samples:
+            return 0
+        refused = 0
+        self.rate.note(len(samples), now)
+        if self.writers.others:
+            samples, refused = self._without_foreign(samples)
+        if len(samples) > 1:
+            self.superseded += len(samples) - 1
+            self.overtaken += overtaken(samples)
+            samples = newest_first(samples)
+        for sample in samples:
+            if self._accept(sample, now):
+                self.accepted_at = since
+                self.clock_gap_s = abs(wall_ns - self.stamps.stamp_ns) / 1e9 - (now - since)
+                break
+            refused += 1
+        return refused
+
+    def _without_foreign(self, samples: Sequence[Sample]) -> tuple[Sequence[Sample], int]:
+        """Leave out what others published, so that it cannot crowd out the owner's samples."""
+        found = []
+        for sample in samples:
+            if self.writers.takes(sample.writer_guid):
+                found.append(sample)
+            else:
+                self._other = sample
+                self._refuse(SampleReason.OTHER_PUBLISHER, "other publisher")
+        return found, len(samples) - len(found)
+
+    def hand_over(self, now: float) -> None:
+        """The publisher that was kept to is gone: take what another one has said meanwhile."""
+        sample, self._other = self._other, None
+        self.stamps.forget()  # the next one may have another clock, or tell the same again
+        lives = sample is not None and sample.writer_guid in self.writers.alive
+        if sample is not None and lives and self._accept(sample, now):
+            self.accepted_at = now
+
+    def drop(self) -> None:
+        """Drop what waits to be taken, and forget when the sample in force came."""
+        self.subscription.take_all()
+        self.accepted_at = -math.inf
+
+    def _accept(self, sample: Sample, now: float) -> bool:
+        data, guid = sample.data, sample.writer_guid
+        self.taken, self.writer_guid = sample, guid
+        try:
+            message = self._decode(data)
+            reason = self._judge(message, data, guid, now)
+        except DecodeError as error:
+            return self._refuse(SampleReason[error.reason.name], str(error))
+        except MemoryError:
+            raise
+        except Exception as error:  # a fault of ours must not let one topic stop the ticks
+            return self._refuse(SampleReason.FAULT, describe(error))
+        if reason is not None:
+            if reason is SampleReason.OTHER_PUBLISHER:
+                self._other = sample
+            return self._refuse(reason, reason.name.lower().replace("_", " "))
+        self.stamps.hold(data, now)
+        self.source_guid, self.message = guid, message
+        self.accepted += 1
+        self.refused_in_a_row = 0
+        return True
+
+    def _judge(self, message: Any, data: bytes, guid: bytes, now: float) -> SampleReason | None:
+        """Pass a sample through the gate to the controllers; return why it did not get there."""
+        if not self.writers.takes(guid):
+            return SampleReason.OTHER_PUBLISHER
+        reason = self.stamps.judge(message.stamp, data, now)
+        if reason is None and self._check is not None:
+            reason = self._check(message, data, self.stamps)
+        if reason is None and (verdict := self._offer(message)):
+            return SampleReason[verdict.name]
+        return reason
+
+    def _refuse(self, reason: SampleReason, detail: str) -> bool:
+        self.refused[reason] += 1
+        self.refused_count += 1
+        self.refused_in_a_row += 1
+        self.last_refusal = reason
+        site = f"{self.topic} {reason.name}"
+        self._logger.warning("refused a sample: %s", detail, throttled=True, site=site)
+        return False
