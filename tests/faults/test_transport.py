@@ -104,6 +104,18 @@ def test_row_02_can_only_holds_then_stops_then_is_silent(key: str, period_s: flo
 
 
 @BOTH
+def test_row_02_can_only_stops_when_the_topic_comes_back_too_late(period_s: float) -> None:
+    scene = Scene(period_s, has_ramp=True).drive()
+    scene.inject(wire.drop, "odometry")
+    while scene.tick().state is not State.STOP:
+        pass
+    scene.clear()
+    stopped = next(row for row in scene.run(9.0) if row.output == "silent")
+    assert stopped.speed == 0.0
+    rearms(scene)
+
+
+@BOTH
 def test_row_03_a_partition_ends_the_output_and_is_named(period_s: float) -> None:
     scene = Scene(period_s).drive()
     since = scene.inject(wire.drop)

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from itertools import pairwise
 
+import pytest
+
 from safety_island.can.mode import OutputMode
-from safety_island.control.status import Mode
+from safety_island.control.status import Mode, MpcStatus
 from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State
 from safety_island.messages.outputs import Control
@@ -85,6 +87,30 @@ class TestCanOnly:
         ]
         stamps = [stamp_ns for _, stamp_ns in can.sent]
         assert all(b - a == 150_000_000 for a, b in pairwise(stamps))
+
+    def test_the_ramp_is_the_same_when_the_input_comes_back(
+        self, follower: FakeFollower, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        """The controllers run again, and want to drive; that takes time, too."""
+        rig, can = can_only(follower)
+        run_lateral = follower.run_lateral
+
+        def take_time(now: float) -> MpcStatus:
+            rig.clock.advance_to_ns(rig.clock.monotonic_ns() + 1_000_000)
+            return run_lateral(now)
+
+        monkeypatch.setattr(follower, "run_lateral", take_time)
+        for _ in range(4):
+            tick(rig, stale=True)
+        del can.sent[:]
+        reports = [tick(rig, stale=number == 0) for number in range(4)]
+        assert {report.life.state for report in reports} == {State.STOP}
+        assert [motion(command) for command, _ in can.sent] == [
+            (0.0625, 0.94375, -0.375),
+            (0.0625, 0.83125, -0.75),
+            (0.0625, 0.6625, -1.125),
+            (0.0625, 0.4375, -1.5),
+        ]
 
     def test_a_driver_who_takes_over_ends_the_ramp(self, follower: FakeFollower) -> None:
         rig, _ = can_only(follower)

@@ -229,6 +229,8 @@ class ControllerNode(Node):
             self.life_cycle.sent(motion, sent[0] is _PUBLISHED, now)
             return sent
         if (substituted := self.life_cycle.motion()) is not None:
+            if checked.command is not None:
+                self.check.forget()  # what was not sent is nothing to measure a change against
             return self._substitute(substituted, now)
         self.check.forget()
         if life.state in _SENDS:
