@@ -43,7 +43,11 @@ FAULTS: dict[int, tuple[str, str, str]] = {
     9: ("frozen odometry, fresh stamps", "refused as FROZEN, silent", "A + T + 45 ms"),
     10: ("frozen stamp", "refused, silent", "A + T + 20 ms"),
     11: ("dead planner", "silent, memory flat", "0.9 s + T + 80 ms"),
-    12: ("operation mode silent; its writer gone", "stays; not engaged", "1 tick, lease 1 s"),
+    12: (
+        "operation mode silent; its writer gone",
+        "stays; READY, still armed (CAN_ONLY: hold, stop, silent)",
+        "1 tick, lease 1 s",
+    ),
     13: ("any order of starts", "READY with the full set only", "1 tick"),
     14: ("truncated bytes", "refused", "0"),
     15: ("flipped bits", "refused, or finite and in range", "0"),
@@ -90,8 +94,8 @@ FAULTS: dict[int, tuple[str, str, str]] = {
     71: ("second island", "the newcomer does not arm", "discovery, 1 s"),
     72: ("second publisher of an input", "first kept and told, or silent", "1 tick"),
     73: ("publisher that flaps", "silent", "1 s"),
-    74: ("participant that crashed", "not engaged, then silent", "A + T + 20 ms"),
-    75: ("restart of the bridge", "nothing old counts", "A"),
+    74: ("participant that crashed", "READY, then silent", "A + T + 20 ms"),
+    75: ("restart of the bridge", "silent, nothing old counts; goes on when nothing was lost", "A"),
     76: ("loop of bridges", "exit code 2, file and line", "start"),
     77: ("mode that toggles", "followed, no output jumps", "1 tick"),
 }

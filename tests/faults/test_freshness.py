@@ -14,7 +14,16 @@ from safety_island.gate.reason import SampleReason
 from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State
 from tests.faults import wire
-from tests.faults.checks import BOTH, bound, recovers, silent_within, stays_active, subject
+from tests.faults.checks import (
+    BOTH,
+    bound,
+    rearms,
+    recovers,
+    silent_within,
+    stays_active,
+    stays_latched,
+    subject,
+)
 from tests.faults.scene import AGED, INPUTS, Scene
 
 TICKS_OF_A_DEAD_PLANNER = 20_000
@@ -121,6 +130,25 @@ def test_row_12_without_a_writer_of_the_mode_nobody_says_that_we_drive(period_s:
     assert scene.tick().state is not State.ACTIVE, "the new writer has said nothing yet"
     scene.main_compute._told_mode = None
     stays_active_soon(scene)
+
+
+@BOTH
+def test_row_12_can_only_stops_when_the_writer_of_the_mode_is_gone(period_s: float) -> None:
+    """Nobody else brakes a vehicle that hears CAN alone."""
+    scene = Scene(period_s, has_ramp=True).drive()
+    scene.wires["operation_mode"].stop()
+    row = scene.tick()
+    assert (row.state, row.reason, row.output) == (State.HOLD, Reason.MODE_WRITER_GONE, "held")
+    rows = [row, *scene.run(8.0)]
+    outputs = [row.output for row in rows]
+    assert outputs == sorted(outputs, key=("held", "ramp", "silent").index)
+    stopped = next(row for row in rows if row.output == "silent")
+    assert (stopped.speed, stopped.reason) == (0.0, Reason.MODE_WRITER_GONE)
+    scene.wires["operation_mode"].restart()
+    scene.main_compute._told_mode = None
+    scene.run(0.6)
+    stays_latched(scene, Reason.MODE_WRITER_GONE)
+    rearms(scene)
 
 
 def stays_active_soon(scene: Scene) -> None:

@@ -130,12 +130,13 @@ def test_row_74_a_participant_that_crashed_is_a_partition(period_s: float) -> No
     first = scene.tick()
     assert (first.state, first.reason) == (State.READY, Reason.MODE_WRITER_GONE)
     silent_within(scene, since, bound("odometry", period_s))
-    assert scene.rows[-1].state is State.INIT
+    assert scene.rows[-1].state is State.SILENT
+    assert scene.node.life_cycle.life.cause is Reason.INPUT_STALE
 
 
 @BOTH
 def test_row_75_after_a_restart_of_the_bridge_no_old_sample_counts(period_s: float) -> None:
-    """Its new writers begin with what the old ones had said last."""
+    """Its new writers begin with what the old ones had said last; nobody drives on by himself."""
     scene = Scene(period_s).drive()
     old = {key: scene.wires[key].sent[0] for key in AGED}
     for key in INPUTS:
@@ -152,7 +153,22 @@ def test_row_75_after_a_restart_of_the_bridge_no_old_sample_counts(period_s: flo
     scene.clear()
     scene.main_compute._told_mode = None
     scene.run(1.0)
-    stays_active(scene, 1.0)
+    stays_latched(scene, Reason.INPUT_STALE)
+    rearms(scene)
+
+
+@BOTH
+def test_row_75_a_restart_that_loses_no_input_is_driven_over(period_s: float) -> None:
+    scene = Scene(period_s).drive()
+    for key in INPUTS:
+        scene.wires[key].stop()
+    rows = scene.run(2 * period_s)
+    assert {(row.state, row.reason) for row in rows} == {(State.READY, Reason.MODE_WRITER_GONE)}
+    for key in INPUTS:
+        scene.wires[key].restart()
+    scene.main_compute._told_mode = None
+    scene.run(max(0.05, period_s))
+    stays_active(scene, 2.0)
 
 
 def test_row_76_a_bridge_that_closes_a_loop_does_not_start(

@@ -11,6 +11,7 @@ from tests.life_cycle.parameters import PARAMETERS
 
 T = 0.125
 MANUAL = Reason.NOT_AUTONOMOUS
+GONE = Reason.MODE_WRITER_GONE
 STALE = Reason.INPUT_STALE
 WELL = Life(State.ACTIVE, Reason.NONE)
 SENT = Motion(0.25, 0.5, 2.0, -0.5)

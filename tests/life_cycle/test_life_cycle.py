@@ -7,7 +7,7 @@ import pytest
 from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State
 from safety_island.life_cycle.transition import Life
-from tests.life_cycle.rig import MANUAL, STALE, WELL, Island, silent
+from tests.life_cycle.rig import GONE, MANUAL, STALE, WELL, Island, silent
 
 RESTARTED = Reason.RESTARTED_WHILE_MOVING
 
@@ -37,16 +37,14 @@ class TestStart:
 
     def test_a_mode_that_nobody_tells_does_not(self) -> None:
         island = Island()
-        gone = Reason.MODE_WRITER_GONE
-        assert island.tick(disengaged=gone) == Life(State.READY, gone)
+        assert island.tick(disengaged=GONE) == Life(State.READY, GONE)
         assert island.tick() == silent(RESTARTED)
 
     def test_what_was_armed_by_hand_is_not_barred_later(self) -> None:
         island = Island()
         island.tick()
         assert island.tick(arm=True) == WELL
-        gone = Reason.MODE_WRITER_GONE
-        assert island.tick(disengaged=gone) == Life(State.READY, gone)
+        assert island.tick(disengaged=GONE) == Life(State.READY, GONE, GONE)
         assert island.tick() == WELL
 
 
@@ -61,6 +59,12 @@ class TestSilence:
         island = Island().engage()
         island.tick(STALE)
         assert island.tick(STALE, arm=True) == silent(STALE)
+
+    def test_what_is_lost_after_the_mode_is_latched(self) -> None:
+        island = Island().engage()
+        assert island.tick(disengaged=GONE) == Life(State.READY, GONE, GONE)
+        assert island.tick(STALE, GONE) == silent(STALE)
+        assert island.tick() == silent(Reason.LATCHED, STALE)
 
     def test_the_states_in_which_the_controllers_count(self) -> None:
         island = Island(has_ramp=True).engage()

@@ -7,7 +7,7 @@ import pytest
 from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State
 from safety_island.life_cycle.transition import Life
-from tests.life_cycle.rig import MANUAL, STALE, WELL, Island, silent
+from tests.life_cycle.rig import GONE, MANUAL, STALE, WELL, Island, silent
 
 STALLED = Life(State.INIT, Reason.STALLED)
 CRASHED = Reason.CONTROLLER_FAULT
@@ -103,6 +103,11 @@ class TestCrash:
         island.tick(STALE)
         for _ in range(4):
             assert self.crash(island) == silent(STALE)
+
+    def test_it_is_armed_while_nobody_tells_the_mode(self) -> None:
+        island = Island(fault_ticks=1).engage()
+        island.tick(disengaged=GONE)
+        assert self.crash(island) == silent(CRASHED)
 
     def test_before_it_is_armed_nothing_is_latched(self) -> None:
         island = Island()

@@ -8,7 +8,7 @@ from safety_island.life_cycle.ramp import Motion
 from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State
 from safety_island.life_cycle.transition import Life
-from tests.life_cycle.rig import MANUAL, SENT, STALE, WELL, Island
+from tests.life_cycle.rig import GONE, MANUAL, SENT, STALE, WELL, Island
 
 HELD = SENT._replace(rate=0.0)
 
@@ -66,9 +66,19 @@ def test_a_stop_that_has_begun_is_carried_through() -> None:
 def test_without_anybody_who_tells_the_mode_it_is_carried_through() -> None:
     stopping = island(hold_ticks=0)
     step(stopping)
-    life = stopping.tick(STALE, Reason.MODE_WRITER_GONE)
-    assert life == Life(State.STOP, STALE, STALE)
+    assert stopping.tick(STALE, GONE) == Life(State.STOP, STALE, STALE)
+    assert stopping.tick(disengaged=GONE) == Life(State.STOP, GONE, STALE)
     assert stopping.life_cycle.motion() is not None
+
+
+def test_a_mode_that_nobody_tells_is_a_cause() -> None:
+    stopping = island()
+    names = []
+    for _ in range(4):
+        assert stopping.tick(disengaged=GONE)[1:] == (GONE, GONE)
+        stopping.life_cycle.motion()
+        names.append(stopping.life.state.name)
+    assert names == ["HOLD", "HOLD", "STOP", "STOP"]
 
 
 def test_an_operator_ends_it_and_the_next_stop_begins_anew() -> None:

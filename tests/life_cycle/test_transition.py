@@ -24,35 +24,41 @@ SILENT none    none       -       no  -    -    | SILENT latched    kept
 -      some    OPERATOR   -       -   -    -    | INIT   blocked    none
 -      none    OPERATOR   -       -   -    -    | READY  disengaged none
 # Out of ACTIVE: silence, or with CAN_ONLY hold and stop.
-ACTIVE none    none       -       -   -    -    | ACTIVE none       none
-ACTIVE none    GONE       -       -   -    -    | READY  disengaged none
-ACTIVE some    -          -       -   -    none | SILENT blocked    blocked
-ACTIVE some    -          -       -   no   -    | HOLD   blocked    blocked
-ACTIVE some    -          -       -   yes  -    | STOP   blocked    blocked
+ARMED  none    none       -       -   -    -    | ACTIVE none       none
+ARMED  none    GONE       -       -   -    none | READY  disengaged disengaged
+ARMED  some    -          -       -   -    none | SILENT blocked    blocked
+ARMED  -       -          -       -   no   -    | HOLD   lost       lost
+ARMED  -       -          -       -   yes  -    | STOP   lost       lost
 # HOLD ends with its cause, or in a stop.
 HOLD   none    none       -       -   -    -    | ACTIVE none       none
-HOLD   none    GONE       -       -   -    -    | READY  disengaged none
-HOLD   some    -          -       -   no   -    | HOLD   blocked    kept
-HOLD   some    -          -       -   yes  -    | STOP   blocked    kept
+HOLD   -       -          -       -   no   -    | HOLD   lost       kept
+HOLD   -       -          -       -   yes  -    | STOP   lost       kept
 # A stop that has begun is carried through.
-STOP   some    -          -       -   -    over | SILENT blocked    kept
-STOP   none    -          -       -   -    over | SILENT latched    kept
-STOP   some    -          -       -   -    -    | STOP   blocked    kept
-STOP   none    -          -       -   -    -    | STOP   cause      kept
+STOP   none    none       -       -   -    over | SILENT latched    kept
+STOP   none    none       -       -   -    -    | STOP   cause      kept
+STOP   -       -          -       -   -    over | SILENT lost       kept
+STOP   -       -          -       -   -    -    | STOP   lost       kept
 # Not armed: everything must be there, and a restart at speed needs an explicit act.
 -      some    -          -       -   -    -    | INIT   blocked    none
 -      none    GONE       -       -   -    -    | READY  disengaged none
 -      none    none       some    no  -    -    | SILENT barred     barred
 -      none    none       -       -   -    -    | ACTIVE none       none
 """
-"""``ramp``: none (no such output), over, or still going. The first row that fits counts."""
+"""``ARMED``: ACTIVE, or READY with a cause, which was ACTIVE. ``ramp``: none (no such output),
+over, or still going. ``lost``: blocked, else disengaged. The first row that fits counts."""
 
-CAUSES = (Reason.INPUT_STALE, Reason.OVERRUN, Reason.RESTARTED_WHILE_MOVING)
-WITH_CAUSE = (State.HOLD, State.STOP, State.SILENT)
-DISENGAGED = (Reason.NONE, Reason.NOT_AUTONOMOUS, Reason.MODE_WRITER_GONE)
+GONE = Reason.MODE_WRITER_GONE
+FALLS = (Reason.INPUT_STALE, Reason.OVERRUN, Reason.RESTARTED_WHILE_MOVING, GONE)
+CAUSES = {
+    State.READY: (Reason.NONE, GONE),
+    State.HOLD: FALLS,
+    State.STOP: FALLS,
+    State.SILENT: FALLS,
+}
+DISENGAGED = (Reason.NONE, Reason.NOT_AUTONOMOUS, GONE)
 BARS = (Reason.NONE, Reason.RESTARTED_WHILE_MOVING)
 BOOLS = (False, True)
-WHO = {"none": Reason.NONE, "OPERATOR": Reason.NOT_AUTONOMOUS, "GONE": Reason.MODE_WRITER_GONE}
+WHO = {"none": Reason.NONE, "OPERATOR": Reason.NOT_AUTONOMOUS, "GONE": GONE}
 ROWS = [
     line.replace("|", " ").split()
     for line in TABLE.strip().splitlines()[1:]
@@ -62,7 +68,7 @@ ROWS = [
 
 def lives(state: State) -> list[Life]:
     """A state with each cause that it may carry; its reason is of no account."""
-    causes = CAUSES if state in WITH_CAUSE else (Reason.NONE,)
+    causes = CAUSES.get(state, (Reason.NONE,))
     return [Life(state, reason, cause) for cause in causes for reason in (cause, Reason.LATCHED)]
 
 
@@ -75,13 +81,18 @@ EVERY = tuple(conditions((Reason.INPUT_STALE, Reason.OVERRUN)))
 PAIRS = [(life, now) for state in State for life in lives(state) for now in EVERY]
 
 
+def is_armed(life: Life) -> bool:
+    """ACTIVE, or out of it without anybody who has let it off."""
+    return life.state is State.ACTIVE or (life.state is State.READY and bool(life.cause))
+
+
 def fits(row: list[str], life: Life, now: Conditions) -> bool:
     state, blocked, disengaged, barred, arm, hold, ramp = row[:7]
     words = {False: "no", True: "yes"}
     bars = {"some": now.barred != 0, "cause": now.barred == life.cause, "-": True}
     ramps = {"none": not now.has_ramp, "over": now.ramp_over, "-": True}
     return (
-        state in ("-", life.state.name)
+        state in ("-", life.state.name, "ARMED" if is_armed(life) else "-")
         and blocked in ("-", "some" if now.blocked else "none")
         and (disengaged == "-" or WHO[disengaged] == now.disengaged)
         and bars[barred]
@@ -99,6 +110,7 @@ def expected(life: Life, now: Conditions) -> Life:
         "disengaged": now.disengaged,
         "barred": now.barred,
         "latched": Reason.LATCHED,
+        "lost": now.blocked or now.disengaged,
         "cause": life.cause,
         "kept": life.cause,
     }
@@ -119,7 +131,7 @@ def test_every_row_of_the_table_is_needed() -> None:
 
 def test_the_pairs_are_all_pairs() -> None:
     assert len(EVERY) == 3 * 3 * 2 * 2**4
-    assert len(PAIRS) == len(EVERY) * (3 * 2 + 3 * 6)
+    assert len(PAIRS) == len(EVERY) * 2 * (1 + 2 + 1 + 3 * 4)
 
 
 def test_all_fields_keep_their_order() -> None:

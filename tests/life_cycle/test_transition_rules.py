@@ -9,7 +9,7 @@ import pytest
 from safety_island.life_cycle.reason import EXPLANATIONS, Reason
 from safety_island.life_cycle.state import State
 from safety_island.life_cycle.transition import Conditions, Life, next_life
-from tests.life_cycle.test_transition import PAIRS, conditions
+from tests.life_cycle.test_transition import GONE, PAIRS, conditions, is_armed
 
 STEPS = [(life, now, next_life(life, now)) for life, now in PAIRS]
 BLOCKS = tuple(r for r in Reason if r not in (Reason.NONE, Reason.LATCHED))
@@ -50,16 +50,16 @@ def test_silence_keeps_its_cause() -> None:
 
 def test_a_barred_island_does_not_arm_itself() -> None:
     for life, now, then in STEPS:
-        armed = life.state in (State.ACTIVE, State.HOLD)
+        armed = is_armed(life) or life.state is State.HOLD
         if then.state is State.ACTIVE and now.barred and not armed:
             assert now.arm, (life, now)
 
 
 def test_no_way_leads_around_the_bar() -> None:
     life = START
-    gone = Conditions(Reason.NONE, Reason.MODE_WRITER_GONE, Reason.STALLED, *[False] * 4)
+    gone = Conditions(Reason.NONE, GONE, Reason.STALLED, *[False] * 4)
     life = next_life(life, gone)
-    assert life == Life(State.READY, Reason.MODE_WRITER_GONE)
+    assert life == Life(State.READY, GONE)
     life = next_life(life, gone._replace(disengaged=Reason.NONE))
     assert life == Life(State.SILENT, Reason.STALLED, Reason.STALLED)
 
@@ -88,6 +88,20 @@ def test_a_stop_that_has_begun_ends_in_silence_or_with_an_operator() -> None:
             assert then.state is (State.SILENT if now.ramp_over else State.STOP)
 
 
+def test_a_mode_that_nobody_tells_lets_no_armed_island_off() -> None:
+    for life, now, then in STEPS:
+        fell = life.state in (State.HOLD, State.STOP, State.SILENT)
+        if (fell or is_armed(life)) and now.disengaged is GONE:
+            assert then.cause, (life, now)
+            assert then.state is not State.INIT
+
+
+def test_a_vehicle_that_hears_only_can_is_stopped_when_nobody_tells_the_mode() -> None:
+    for life, now, then in STEPS:
+        if now.has_ramp and now.disengaged is GONE and life.state in (State.ACTIVE, State.HOLD):
+            assert then.state is (State.STOP if now.hold_over else State.HOLD)
+
+
 def test_without_a_vehicle_under_control_nothing_alarms() -> None:
     found = {next_life(START, now) for _, now in PAIRS if now.disengaged}
     assert {life.state for life in found} == {State.INIT, State.READY}
@@ -104,5 +118,7 @@ def test_every_reachable_reason_is_explained(has_ramp: bool) -> None:
 @pytest.mark.parametrize("has_ramp", [False, True])
 def test_a_cause_is_kept_just_by_what_fell_out_of_active(has_ramp: bool) -> None:
     for life in reachable(has_ramp):
-        keeps = life.state in (State.HOLD, State.STOP, State.SILENT)
-        assert bool(life.cause) == keeps, life
+        fell = life.state in (State.HOLD, State.STOP, State.SILENT)
+        waits = life.state is State.READY and life.reason is GONE and not has_ramp
+        assert bool(life.cause) == fell or waits, life
+        assert life.state is not State.READY or life.cause in (Reason.NONE, life.reason)

@@ -68,6 +68,12 @@ class Scene:
         process.kill()
         process.wait()
 
+    def stop(self, name: str) -> None:
+        """End a process in an orderly way, and wait until it is gone."""
+        process = self._running.pop(name)
+        process.terminate()
+        process.wait()
+
     def signal(self, name: str, number: signal.Signals) -> None:
         """Send a signal."""
         self._running[name].send_signal(number)

@@ -19,17 +19,29 @@ LOST = (Reason.INPUT_STALE, Reason.PARTITION)
 
 def test_a_bridge_that_comes_back_is_driven_over_again(drive: Scene) -> None:
     drive.kill(BRIDGE)
-    silent = drive.state(State.SILENT).message
-    assert silent.reason in LOST
-    assert silent.latched_cause in LOST
-    modes = drive.main.heard[topics.OPERATION_MODE]
-    drive.until(lambda: modes[-1].message.mode == Mode.STOP, "autonomous mode is left")
+    _is_silent_until_autonomous_mode_is_left(drive)
+    _comes_back(drive)
+
+
+def test_a_bridge_that_is_stopped_in_order_ends_the_drive_as_well(drive: Scene) -> None:
+    drive.stop(BRIDGE)
+    ready = drive.state(State.READY, Reason.MODE_WRITER_GONE).message
+    assert ready.latched_cause == Reason.MODE_WRITER_GONE
+    _is_silent_until_autonomous_mode_is_left(drive)
     _comes_back(drive)
 
 
 def test_a_bridge_that_is_back_before_its_lease_has_ended(drive: Scene) -> None:
     drive.kill(BRIDGE)
     _comes_back(drive)
+
+
+def _is_silent_until_autonomous_mode_is_left(drive: Scene) -> None:
+    silent = drive.state(State.SILENT).message
+    assert silent.reason in LOST
+    assert silent.latched_cause in LOST
+    modes = drive.main.heard[topics.OPERATION_MODE]
+    drive.until(lambda: modes[-1].message.mode == Mode.STOP, "autonomous mode is left")
 
 
 def _comes_back(drive: Scene) -> None:

@@ -29,7 +29,7 @@ it, `island status --json` streams it, `island status --why` says in one sentenc
 being published, or that all is well.
 """
 STATES = "What the island lets out."
-REASON = "Why the island is in its state, and what made it SILENT (`latched_cause`)."
+REASON = "Why the island is in its state, and the cause that is latched (`latched_cause`)."
 REFUSED = "Why a sample of an input was refused; `refused` counts them, each reason at its number."
 WARNING = "What is wrong with an input without ending the output."
 LIMITS = "What bounded or held a command in the controllers (`controller_limits`)."

@@ -32,7 +32,6 @@ class Facts(NamedTuple):
 
 
 _QUIET = (Reason.NONE, Reason.NONE)
-_ARMED = frozenset({State.ACTIVE, State.HOLD, State.STOP})
 _CONTROLS = frozenset({State.INIT, State.READY, State.ACTIVE, State.HOLD})
 
 
@@ -130,7 +129,7 @@ class LifeCycle:
         self._has_crashed = True
         state, reason = self.life.state, Reason.CONTROLLER_FAULT
         if self._crashes.count + 1 >= self._params.fault_ticks and state is not State.SILENT:
-            armed = state in _ARMED
+            armed = state is State.ACTIVE or self.life.cause
             self.life = Life(State.SILENT, reason, reason) if armed else Life(State.INIT, reason)
 
     def _own_cause(self, facts: Facts, now: float) -> Reason:

@@ -28,7 +28,11 @@ class Conditions(NamedTuple):
 
 
 class Life(NamedTuple):
-    """The state, why, and for what cause an armed island fell out of ACTIVE (NONE: it did not)."""
+    """The state, why, and for what cause an armed island fell out of ACTIVE (NONE: it did not).
+
+    READY with a cause is still armed: the publisher of the operation mode has gone, and whatever
+    else is lost before it is back ends in silence.
+    """
 
     state: State
     reason: Reason
@@ -43,14 +47,11 @@ def next_life(life: Life, now: Conditions) -> Life:
     state, _, cause = life
     if state is State.SILENT:
         return _silent(cause, now)
-    if state is State.ACTIVE and not now.blocked and not now.disengaged:
-        return _WELL
-    if now.disengaged is not Reason.NOT_AUTONOMOUS:  # a mode that is unknown lets nobody off
-        if state is State.ACTIVE and now.blocked:
-            return _fall(now)
-        if state in (State.HOLD, State.STOP):
-            return _stop(state, cause, now)
-    return _unarmed(now)
+    if now.disengaged is Reason.NOT_AUTONOMOUS:  # an act of an operator; a mode unknown is none
+        return _unarmed(now)
+    if state in (State.HOLD, State.STOP):
+        return _stop(state, cause, now)
+    return _armed(now) if state is State.ACTIVE or cause else _unarmed(now)
 
 
 def _unarmed(now: Conditions) -> Life:
@@ -64,23 +65,28 @@ def _unarmed(now: Conditions) -> Life:
     return _WELL
 
 
-def _fall(now: Conditions) -> Life:
-    """Out of ACTIVE: silence, since a gate brakes; without one, hold and then stop."""
-    if not now.has_ramp:
-        return Life(State.SILENT, now.blocked, now.blocked)
-    state = State.STOP if now.hold_over else State.HOLD
-    return Life(state, now.blocked, now.blocked)
+def _armed(now: Conditions) -> Life:
+    """Out of ACTIVE: silence, since a gate brakes; without one, hold and then stop.
+
+    While just the mode is unknown, the gate is told as before, and need not brake for it.
+    """
+    lost = now.blocked or now.disengaged
+    if not lost:
+        return _WELL
+    if now.has_ramp:
+        return Life(State.STOP if now.hold_over else State.HOLD, lost, lost)
+    return Life(State.SILENT if now.blocked else State.READY, lost, lost)
 
 
 def _stop(state: State, cause: Reason, now: Conditions) -> Life:
     """From HOLD back when the cause has gone; a stop that has begun is carried through."""
-    if state is State.HOLD and not now.blocked:
-        back = State.READY if now.disengaged else State.ACTIVE
-        return Life(back, now.disengaged)
+    lost = now.blocked or now.disengaged
+    if state is State.HOLD and not lost:
+        return _WELL
     if state is State.STOP and now.ramp_over:
-        return Life(State.SILENT, now.blocked or Reason.LATCHED, cause)
+        return Life(State.SILENT, lost or Reason.LATCHED, cause)
     is_stop = state is State.STOP or now.hold_over
-    return Life(State.STOP if is_stop else State.HOLD, now.blocked or cause, cause)
+    return Life(State.STOP if is_stop else State.HOLD, lost or cause, cause)
 
 
 def _silent(cause: Reason, now: Conditions) -> Life:
