@@ -133,6 +133,32 @@ class TestCanOnly:
         ]
 
 
+class TestLog:
+    """An output that fails makes READY and INIT alternate; each line is told every 3 s."""
+
+    def failing(self, follower: FakeFollower, ticks: int) -> Rig:
+        rig = Rig(follower, [RecordingOutput("dds", works=False)])
+        found = {tick(rig, engaged=False).life.state for _ in range(ticks)}
+        assert found == {State.READY, State.INIT}
+        return rig
+
+    def told(self, rig: Rig) -> list[str]:
+        return [line.split(":")[0] for line in states(rig)]
+
+    @pytest.mark.parametrize(("ticks", "lines"), [(19, 2), (38, 4)])
+    def test_states_that_come_and_go_do_not_flood_it(
+        self, follower: FakeFollower, ticks: int, lines: int
+    ) -> None:
+        assert self.told(self.failing(follower, ticks)) == ["READY", "INIT"] * (lines // 2)
+
+    def test_another_reason_is_told_at_once(self, follower: FakeFollower) -> None:
+        rig = self.failing(follower, 15)
+        for _ in range(5):
+            tick(rig, stale=True, engaged=False)
+        assert self.told(rig) == ["READY", "INIT", "INIT"]
+        assert states(rig)[-1] == "INIT: odometry is older than its limit"
+
+
 class TestSilence:
     def silent(self, follower: FakeFollower) -> tuple[Rig, RecordingOutput]:
         output = RecordingOutput("dds")

@@ -263,7 +263,7 @@ class ControllerNode(Node):
         return reason.name.lower().replace("_", " ")
 
     def _tell(self, life: Life, subject: int) -> None:
-        """Log a change of state, once for each."""
-        meaning = explain(life.reason, subject)
+        """Log a change of state; one that comes and goes is told now and then."""
+        state, meaning = life.state.name, explain(life.reason, subject)
         log = self.logger.warning if life.state in _ALARMING else self.logger.info
-        log("state %s: %s", life.state.name, meaning)
+        log("state %s: %s", state, meaning, throttled=True, site=f"{state} {life.reason.name}")
