@@ -86,7 +86,11 @@ FAULTS: dict[int, tuple[str, str, str]] = {
     48: ("growth of memory", "none", "-"),
     49: ("no memory", "the process ends, exit code 70", "T"),
     50: ("no descriptors", "other outputs go on; silent without any", "3 ticks"),
-    51: ("exception anywhere", "no command that tick, silent after 3", "3 ticks"),
+    51: (
+        "exception anywhere",
+        "no command that tick, silent after 3 (CAN_ONLY: hold, stop, silent)",
+        "3 ticks",
+    ),
     67: ("unknown, missing or misspelt key", "exit code 2, file and line", "start"),
     68: ("value out of range, NaN, wrong type", "exit code 2, file and line", "start"),
     69: ("values that do not fit together", "exit code 2, file and line", "start"),

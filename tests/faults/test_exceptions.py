@@ -55,6 +55,20 @@ def test_row_51_an_exception_costs_its_tick_and_many_end_the_output(
     rearms(scene)
 
 
+@pytest.mark.parametrize("place", PLACES)
+def test_row_51_can_only_stops_the_vehicle_though_every_tick_fails(
+    place: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scene = Scene(has_ramp=True).drive()
+    ticks = scene.parameters.life_cycle.fault_ticks
+    monkeypatch.setattr(*PLACES[place](scene), fail_with(ZeroDivisionError("on purpose")))
+    outputs = [row.output for row in scene.run(9.0)][ticks - 1 :]
+    assert outputs == sorted(outputs, key=("held", "ramp", "silent").index)
+    assert set(outputs) == {"held", "ramp", "silent"}
+    assert scene.rows[-1].speed == 0.0
+    assert scene.rows[-1].reason is Reason.CONTROLLER_FAULT
+
+
 @pytest.mark.parametrize("name", ["_decode", "_check", "_offer"])
 @pytest.mark.parametrize("key", ["trajectory", "odometry", "steering", "acceleration"])
 def test_row_51_an_exception_over_a_sample_refuses_that_sample(key: str, name: str) -> None:

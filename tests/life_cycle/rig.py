@@ -15,6 +15,7 @@ GONE = Reason.MODE_WRITER_GONE
 STALE = Reason.INPUT_STALE
 WELL = Life(State.ACTIVE, Reason.NONE)
 SENT = Motion(0.25, 0.5, 2.0, -0.5)
+HELD = SENT._replace(rate=0.0)
 
 
 class Island:

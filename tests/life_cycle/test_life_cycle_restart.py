@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import pytest
 
+from safety_island.life_cycle.ramp import Motion
 from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State
 from safety_island.life_cycle.transition import Life
-from tests.life_cycle.rig import GONE, MANUAL, STALE, WELL, Island, silent
+from tests.life_cycle.rig import GONE, HELD, MANUAL, STALE, WELL, Island, silent
 
 STALLED = Life(State.INIT, Reason.STALLED)
 CRASHED = Reason.CONTROLLER_FAULT
@@ -101,8 +102,8 @@ class TestCrash:
     def test_a_silence_keeps_its_cause(self) -> None:
         island = Island().engage()
         island.tick(STALE)
-        for _ in range(4):
-            assert self.crash(island) == silent(STALE)
+        found = [self.crash(island) for _ in range(4)]
+        assert found == [silent(STALE)] * 2 + [silent(CRASHED, STALE)] * 2
 
     def test_it_is_armed_while_nobody_tells_the_mode(self) -> None:
         island = Island(fault_ticks=1).engage()
@@ -118,11 +119,30 @@ class TestCrash:
         assert island.tick(disengaged=MANUAL) == Life(State.INIT, CRASHED)
         assert island.tick(disengaged=MANUAL) == Life(State.READY, MANUAL)
 
+    def test_with_can_alone_it_stops_the_vehicle_from_where_it_was(self) -> None:
+        island = Island(has_ramp=True).engage()
+        for speed in (2.0, 3.0):
+            island.tick(speed=speed)
+        found = []
+        for _ in range(5):
+            self.crash(island)
+            found.append((island.life.state.name, island.life_cycle.motion()))
+        assert found == [
+            *[("ACTIVE", None)] * 2,
+            *[("HOLD", HELD)] * 2,
+            ("STOP", Motion(0.25, 0.0, 2.875, -1.0)),
+        ]
+
     @pytest.mark.parametrize("ticks", [1, 4])
-    def test_while_held_or_stopping_it_ends_in_silence(self, ticks: int) -> None:
-        island = Island(has_ramp=True, fault_ticks=1).engage()
+    def test_one_is_enough_to_go_on_with_a_stop(self, ticks: int) -> None:
+        island = Island(has_ramp=True).engage()
         for _ in range(ticks):
             island.tick(STALE)
             island.life_cycle.motion()
-        assert island.life.state is (State.HOLD if ticks == 1 else State.STOP)
-        assert self.crash(island) == silent(CRASHED)
+        state = island.life.state
+        assert state is (State.HOLD if ticks == 1 else State.STOP)
+        assert self.crash(island) == Life(state, CRASHED, STALE)
+        for _ in range(40):
+            assert island.life_cycle.motion() is not None or island.life.state is State.SILENT
+            self.crash(island)
+        assert island.life == silent(CRASHED, STALE)

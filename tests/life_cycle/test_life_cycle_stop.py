@@ -8,9 +8,7 @@ from safety_island.life_cycle.ramp import Motion
 from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State
 from safety_island.life_cycle.transition import Life
-from tests.life_cycle.rig import GONE, MANUAL, SENT, STALE, WELL, Island
-
-HELD = SENT._replace(rate=0.0)
+from tests.life_cycle.rig import GONE, HELD, MANUAL, STALE, WELL, Island
 
 
 def island(**changes: float) -> Island:

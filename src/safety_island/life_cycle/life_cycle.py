@@ -52,6 +52,7 @@ class LifeCycle:
         self._has_crashed = False
         self._last_tick: float | None = None
         self._last_sleep_s = 0.0
+        self._speed = 0.0
         self._last_sent = Motion(0.0, 0.0, 0.0, 0.0)
         self._holds = 0
         self._ramp: StopRamp | None = None
@@ -92,22 +93,26 @@ class LifeCycle:
 
     def judge(self, facts: Facts, now: float) -> Life:
         """Take the facts of a tick; return the state that decides what it sends."""
+        self._speed = facts.speed
         if self.life.state is State.ACTIVE and facts[:2] == _QUIET and self._is_calm(facts):
             return self.life  # the usual case, in which nothing can change
-        if facts.disengaged is Reason.NOT_AUTONOMOUS:
-            self._barred = Reason.NONE
         self._faults.note(facts.failed, now)
         self._unsolved.note(facts.unsolved, now)
         self._refusals.note(facts.refused is not Reason.NONE, now)
-        is_moving = not abs(facts.speed) < self._params.moving_speed
+        if facts.disengaged is Reason.NOT_AUTONOMOUS:
+            self._barred = Reason.NONE
+        return self._step(facts.blocked or self._own_cause(facts, now), facts.disengaged, facts.arm)
+
+    def _step(self, blocked: Reason, disengaged: Reason = Reason.NONE, arm: bool = False) -> Life:
         before = self.life.state
+        is_moving = not abs(self._speed) < self._params.moving_speed
         self.life = next_life(
             self.life,
             Conditions(
-                blocked=facts.blocked or self._own_cause(facts, now),
-                disengaged=facts.disengaged,
+                blocked=blocked,
+                disengaged=disengaged,
                 barred=self._barred if is_moving else Reason.NONE,
-                arm=facts.arm,
+                arm=arm,
                 has_ramp=self._has_ramp,
                 hold_over=self._holds >= self._params.hold_ticks,
                 ramp_over=self._ramp is not None and self._ramp.is_over,
@@ -115,7 +120,7 @@ class LifeCycle:
         )
         if self.life.state is State.ACTIVE:
             self._barred = Reason.NONE
-        self._enter(before, facts.speed)
+        self._enter(before)
         return self.life
 
     def _is_calm(self, facts: Facts) -> bool:
@@ -124,13 +129,16 @@ class LifeCycle:
         counts = (self._faults, self._unsolved, self._refusals, self._outputs, self._crashes)
         return not wrong and not any([streak.count for streak in counts])
 
-    def fault(self) -> None:
-        """Note a tick that ended with an exception and sent nothing; too many end the output."""
+    def fault(self) -> Life:
+        """Note a tick that ended with an exception; too many end the output as other causes do.
+
+        A stop that has begun goes on. Nobody has heard who drives, which lets nobody off.
+        """
         self._has_crashed = True
-        state, reason = self.life.state, Reason.CONTROLLER_FAULT
-        if self._crashes.count + 1 >= self._params.fault_ticks and state is not State.SILENT:
-            armed = state is State.ACTIVE or self.life.cause
-            self.life = Life(State.SILENT, reason, reason) if armed else Life(State.INIT, reason)
+        are_many = self._crashes.count + 1 >= self._params.fault_ticks
+        if are_many or self.life.state in (State.HOLD, State.STOP):
+            return self._step(Reason.CONTROLLER_FAULT)
+        return self.life
 
     def _own_cause(self, facts: Facts, now: float) -> Reason:
         """What ticks, controllers, guard and outputs forbid."""
@@ -145,10 +153,10 @@ class LifeCycle:
             return facts.refused
         return Reason.OUTPUT_FAILED if self._outputs.count >= params.fault_ticks else Reason.NONE
 
-    def _enter(self, before: State, speed: float) -> None:
+    def _enter(self, before: State) -> None:
         state = self.life.state
         if state is State.STOP and before is not State.STOP:
-            self._ramp = StopRamp(self._params, self._last_sent, speed)
+            self._ramp = StopRamp(self._params, self._last_sent, self._speed)
         elif state not in (State.HOLD, State.STOP):
             self._holds, self._ramp = 0, None
         if state in (State.INIT, State.SILENT):

@@ -20,7 +20,7 @@ from safety_island.node.controllers import NO_COMMAND, Controllers, Ran
 from safety_island.node.explain import explain
 from safety_island.node.follower import Follower
 from safety_island.node.identity import Identity
-from safety_island.node.input_set import NOT_BLOCKED, Blocked, InputSet
+from safety_island.node.input_set import NO_SUBJECT, NOT_BLOCKED, Blocked, InputSet
 from safety_island.node.node import Node
 from safety_island.node.outputs import ControlTopic, Output, ProcessingTime
 from safety_island.node.report import Outcome, TickReport, describe
@@ -130,7 +130,7 @@ class ControllerNode(Node):
         except Exception as error:  # a tick may fail, the process may not
             outcome, detail = Outcome.FAULT, describe(error)
             self.logger.error("the tick failed: %s", detail, throttled=True)
-            self.life_cycle.fault()
+            self._fail(now)
             self.inputs.measure(now)
         self.inputs.warn(now)
         if self.sender.command is None:
@@ -244,6 +244,21 @@ class ControllerNode(Node):
         if checked.command is None:
             return checked.outcome, checked.detail
         return self._publish(checked.command, Outcome.SUBSTITUTED)
+
+    def _fail(self, now: float) -> None:
+        """End a tick that an exception has ended; a stop goes on, whatever fails in it."""
+        before, life = self.life_cycle.state, self.life_cycle.fault()
+        if life.state is not before:
+            self._tell(life, NO_SUBJECT)
+        if self.sender.command is not None or (motion := self.life_cycle.motion()) is None:
+            return
+        self.check.forget()  # who knows what it has seen in this tick
+        try:
+            self._substitute(motion, now)
+        except MemoryError:
+            raise
+        except Exception as error:
+            self.logger.error("the stop failed: %s", describe(error), throttled=True)
 
     def _publish(self, result: Computed, sent: Outcome) -> tuple[Outcome, str]:
         """Send a command, and say how that ended."""
