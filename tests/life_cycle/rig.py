@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from safety_island.life_cycle.life_cycle import Facts, LifeCycle
+from safety_island.life_cycle.facts import Facts
+from safety_island.life_cycle.life_cycle import LifeCycle
 from safety_island.life_cycle.ramp import Motion
 from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State

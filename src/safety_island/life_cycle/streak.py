@@ -9,13 +9,16 @@ class Streak:
     """Counts failures in a row, and since when [s, monotonic] they go on."""
 
     def __init__(self) -> None:
-        self.count = 0
-        self.since = math.inf
+        self.forget()
+
+    def forget(self) -> None:
+        """End the streak."""
+        self.count, self.since = 0, math.inf
 
     def note(self, failed: bool, now: float) -> None:
         """Note one more time; a success ends the streak."""
         if not failed:
-            self.count, self.since = 0, math.inf
+            self.forget()
             return
         if not self.count:
             self.since = now

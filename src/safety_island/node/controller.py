@@ -7,7 +7,8 @@ from collections.abc import Callable, Sequence
 from safety_island.can.mode import OutputMode
 from safety_island.dds import topics
 from safety_island.guard import Guard
-from safety_island.life_cycle.life_cycle import Facts, LifeCycle
+from safety_island.life_cycle.facts import Facts
+from safety_island.life_cycle.life_cycle import LifeCycle
 from safety_island.life_cycle.ramp import Motion
 from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State
