@@ -32,10 +32,10 @@ The campaign runs on virtual time, at periods of 150 ms and 30 ms where both hav
 """
 
 FAULTS: dict[int, tuple[str, str, str]] = {
-    1: ("random loss, 1 to 20 %", "goes on", "-"),
+    1: ("random loss, 1 to 20 %", "goes on, a low rate is warned of", "-"),
     2: ("one topic lost", "silent; CAN_ONLY: hold, stop, silent", "A + T + 20 ms"),
     3: ("all topics lost", "silent, reason PARTITION", "A + T + 20 ms"),
-    4: ("delay", "measured; beyond A refused as DELAYED, silent", "A + T + 20 ms"),
+    4: ("delay", "warned of; beyond A refused as DELAYED, silent", "A + T + 20 ms"),
     5: ("jitter and bursts", "the newest counts, the rest is counted", "1 tick"),
     6: ("duplicates", "no bit of a command changes; no sign of life", "0"),
     7: ("reordering", "older ones dropped and counted", "0"),
@@ -67,9 +67,9 @@ FAULTS: dict[int, tuple[str, str, str]] = {
     29: ("path out of reach", "steering held and braking, then silent", "0.5 s + 2 T"),
     30: ("path that jumps", "steering within its rate", "rate limit"),
     31: ("speed zero, signs mixed", "brakes; refused", "1 tick"),
-    32: ("wall clock back 1 h", "no missed tick, nothing stale", "0"),
-    33: ("wall clock forward 1 h", "no missed tick, nothing stale", "0"),
-    34: ("skewed sender", "no bit of a command changes", "0"),
+    32: ("wall clock back 1 h", "no missed tick, nothing stale; warned of", "0"),
+    33: ("wall clock forward 1 h", "no missed tick, nothing stale; warned of", "0"),
+    34: ("skewed sender", "no bit of a command changes; warned of", "0"),
     35: ("stamp that is no time", "refused", "1 tick"),
     36: ("wrap of counters and stamps on CAN", "accepted by the receiver", "0"),
     37: ("sleep of the machine", "begins anew, not armed in motion", "1 tick"),
