@@ -99,7 +99,7 @@ FAULTS: dict[int, tuple[str, str, str]] = {
     72: ("second publisher of an input", "first kept and told, or silent", "1 tick"),
     73: ("publisher that flaps", "silent", "1 s"),
     74: ("participant that crashed", "READY, then silent", "A + T + 20 ms"),
-    75: ("restart of the bridge", "silent, nothing old counts; goes on when nothing was lost", "A"),
+    75: ("restart of the bridge", "nothing old counts; its clock may be another", "A"),
     76: ("loop of bridges", "exit code 2, file and line", "start"),
     77: ("mode that toggles", "followed, no output jumps", "1 tick"),
 }

@@ -21,7 +21,7 @@ from tests.faults.checks import (
     stays_latched,
     subject,
 )
-from tests.faults.scene import AGED, INPUTS, SLOW, Scene
+from tests.faults.scene import AGED, EPOCH_NS, INPUTS, SLOW, Scene
 
 EACH = pytest.mark.parametrize("key", INPUTS)
 
@@ -169,6 +169,51 @@ def test_row_75_a_restart_that_loses_no_input_is_driven_over(period_s: float) ->
     scene.main_compute._told_mode = None
     scene.run(max(0.05, period_s))
     stays_active(scene, 2.0)
+
+
+@BOTH
+def test_row_75_what_was_held_up_is_not_taken_for_another_clock(period_s: float) -> None:
+    """A new writer begins with what was said meanwhile: newer than all before, and old."""
+    scene = Scene(period_s).drive()
+    for key in INPUTS:
+        scene.wires[key].stop()
+    kept: dict[str, list[bytes]] = {key: [] for key in AGED}
+    for key in AGED:
+        scene.inject(wire.keep(kept[key]), key)
+    scene.run(1.0)
+    scene.inject(wire.drop)
+    scene.run(3.0)
+    accepted = {key: scene.input(key).accepted for key in AGED}
+    for key in INPUTS:
+        scene.wires[key].restart()
+    for key in AGED:
+        scene.wires[key].release(kept[key])
+    scene.run(1.0)
+    for key in AGED:
+        assert scene.input(key).accepted == accepted[key]
+        assert scene.refused(key, SampleReason.DELAYED) > 0
+
+
+@BOTH
+@pytest.mark.parametrize("skew_ms", [-60_000, -3000, -1500, -400, 400, 60_000])
+def test_row_75_a_new_main_compute_may_have_another_clock(period_s: float, skew_ms: int) -> None:
+    """Its stamps lie before the old ones, or after them, as of samples that were held up for long.
+
+    It is heard within half the age limit and two periods of its own.
+    """
+    scene = Scene(period_s).drive()
+    for key in INPUTS:
+        scene.wires[key].stop()
+    scene.run(2.0)
+    scene.remote_clock.set_wall_offset_ns(EPOCH_NS + skew_ms * 1_000_000)
+    accepted = {key: scene.input(key).accepted for key in AGED}
+    for key in INPUTS:
+        scene.wires[key].restart()
+    scene.main_compute._told_mode = None
+    scene.run(0.45 + 0.2 + period_s)
+    assert all(scene.input(key).accepted > accepted[key] for key in AGED)
+    scene.run(1.0)
+    stays_active(scene, 1.0)
 
 
 def test_row_76_a_bridge_that_closes_a_loop_does_not_start(

@@ -6,14 +6,9 @@ import math
 
 import pytest
 
+from safety_island.gate.clock_search import SEARCH_SHARE
 from safety_island.gate.reason import SampleReason
-from safety_island.gate.stamps import (
-    BEGIN_ANEW_S,
-    FORGET_RATE,
-    STEP_BACK_SHARE,
-    STEP_TOLD_S,
-    StampGate,
-)
+from safety_island.gate.stamps import BEGIN_ANEW_S, FORGET_RATE, STEP_TOLD_S, StampGate
 from safety_island.messages.wire import Time
 
 OLDER, DELAYED = SampleReason.OLDER, SampleReason.DELAYED
@@ -43,7 +38,7 @@ def gate() -> StampGate:
 
 
 def test_the_numbers() -> None:
-    assert (BEGIN_ANEW_S, FORGET_RATE, STEP_BACK_SHARE, STEP_TOLD_S) == (10.0, 0.001, 0.5, 1.0)
+    assert (BEGIN_ANEW_S, FORGET_RATE, SEARCH_SHARE, STEP_TOLD_S) == (10.0, 0.001, 0.5, 1.0)
     assert StampGate().limit_s == math.inf
     assert (StampGate(0.5).steps_back, StampGate(0.5).delay_s, StampGate(0.5).stamp_ns) == (0, 0, 0)
     assert StampGate(0.5).step_told_until == -math.inf
@@ -76,7 +71,11 @@ def test_a_stamp_that_stands_still_never_refreshes(gate: StampGate) -> None:
 def test_what_it_says_after_its_stamp(gate: StampGate) -> None:
     assert gate.repeats(b"other header" + b"held")
     assert not gate.repeats(b"said before.help")
+    assert not gate.repeats(b"said before.Held")
     assert not gate.repeats(b"said before.held!")
+    gate.forget()
+    assert not gate.repeats(b"said before.held")
+    assert not StampGate(0.5).repeats(b"other header" + b"held")
 
 
 class TestDelay:
@@ -139,6 +138,12 @@ class TestOlder:
         assert offer(gate, 50.5, 1000.5) is OLDER
         assert offer(gate, 50.625, 1000.625) is None
 
+    def test_a_gap_beyond_the_limit_begins_the_search_anew(self, gate: StampGate) -> None:
+        """One that was overtaken, and much later another one: no clock."""
+        assert offer(gate, 50.0, 1000.125) is OLDER
+        assert offer(gate, 50.5, 1000.6251) is OLDER
+        assert offer(gate, 51.0, 1001.1251) is None
+
     def test_a_good_sample_ends_the_search(self, gate: StampGate) -> None:
         assert offer(gate, 50.0, 1000.125) is OLDER
         assert offer(gate, 100.25, 1000.25) is None
@@ -168,6 +173,52 @@ class TestOlder:
         assert [offer(gate, 50.0 + i, 1001.0 + i) for i in range(3)] == [None] * 3
         assert offer(gate, 20.0, 1004.0) is None
         assert gate.steps_back == 2
+
+
+class TestSuccessor:
+    """Another publisher than the one before, perhaps with a clock of its own."""
+
+    @staticmethod
+    def offer(gate: StampGate, seconds: float, now: float) -> SampleReason | None:
+        reason = gate.judge(stamp(seconds), b"successor", now, is_successor=True)
+        if reason is None:
+            gate.hold(b"successor", now)
+        return reason
+
+    def test_its_delay_counts_from_zero(self, gate: StampGate) -> None:
+        offer(gate, 100.125, 1000.375)
+        assert gate.delay_s > 0.2
+        assert self.offer(gate, 100.25, 1000.625) is None
+        assert gate.delay_s == 0.0
+        assert offer(gate, 100.375, 1001.0) is None
+        assert gate.delay_s == pytest.approx(0.25 - 0.000375)
+
+    def test_a_clock_behind_is_taken_when_its_stamps_go_on(self, gate: StampGate) -> None:
+        found = [self.offer(gate, 101.0 + 0.125 * i, 1005.0 + 0.125 * i) for i in range(3)]
+        assert found == [DELAYED, DELAYED, None]
+        assert (gate.delay_s, gate.steps_back, gate.step_told_until) == (0.0, 0, 1006.25)
+        assert offer(gate, 101.375, 1005.375) is None
+
+    def test_so_is_one_that_begins_before_the_held_stamp(self, gate: StampGate) -> None:
+        found = [self.offer(gate, 99.9 + 0.125 * i, 1005.0 + 0.125 * i) for i in range(3)]
+        assert found == [OLDER, DELAYED, None]
+
+    def test_a_single_sample_from_before_is_refused(self, gate: StampGate) -> None:
+        for seconds in (1.0, 2.0, 3.0):
+            assert self.offer(gate, 100.25 + seconds / 8, 1001.0 + seconds) is DELAYED
+
+    def test_what_was_held_is_no_news_from_it_either(self, gate: StampGate) -> None:
+        assert self.offer(gate, 100.0, 1005.0) is SampleReason.STAMP_STANDS_STILL
+        held = gate.judge(stamp(100.0), b"said before.held", 1005.0, is_successor=True)
+        assert held is SampleReason.DUPLICATE
+
+    def test_the_publisher_of_before_is_not_searched(self, gate: StampGate) -> None:
+        found = [offer(gate, 101.0 + 0.125 * i, 1005.0 + 0.125 * i) for i in range(9)]
+        assert found == [DELAYED] * 9
+
+    def test_a_clock_ahead_is_taken_at_once(self, gate: StampGate) -> None:
+        assert self.offer(gate, 900.0, 1001.0) is None
+        assert gate.step_told_until == 1002.0
 
 
 class TestStep:
@@ -215,8 +266,10 @@ class TestStep:
 
     def test_after_a_pause_nobody_can_tell(self, gate: StampGate) -> None:
         assert offer(gate, 200.0, 1010.125) is None
-        assert offer(gate, 50.0, 1020.25) is None
         assert (gate.steps_back, gate.step_told_until) == (0, -math.inf)
+        offer(gate, 900.0, 1010.25)
+        assert offer(gate, 50.0, 1020.5) is None
+        assert (gate.steps_back, gate.step_told_until) == (0, 1011.25)
 
     def test_without_an_age_limit_only_back(self) -> None:
         """A first sample that was said long ago is no measure for the next one."""
@@ -243,6 +296,6 @@ class TestBeginAnew:
         offer(gate, 100.125, 1000.375)
         offer(gate, 50.0, 1000.5)
         gate.forget()
-        assert gate.delay_s == 0.0 and not gate.repeats(b"said before.held")
+        assert gate.delay_s == 0.0
         assert offer(gate, 100.125, 1000.5) is None
         assert offer(gate, 50.0, 1000.75) is OLDER

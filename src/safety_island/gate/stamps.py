@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 
+from safety_island.gate.clock_search import ClockSearch
 from safety_island.gate.reason import SampleReason
 from safety_island.messages.wire import NANOSECONDS, Time
 
@@ -17,10 +18,6 @@ BEGIN_ANEW_S = 10.0
 FORGET_RATE = 0.001
 """Rate [s/s] at which a delay is forgotten: two clocks may drift apart by 1000 ppm at most."""
 
-STEP_BACK_SHARE = 0.5
-"""Share of the age limit for which older stamps must keep advancing until they count as a clock
-that was set back rather than as samples that were overtaken."""
-
 STEP_TOLD_S = 1.0
 """Time [s] for which a step of the sender's clock is told."""
 
@@ -28,11 +25,11 @@ STEP_TOLD_S = 1.0
 class StampGate:
     """Judges each sample by its stamp; told the time [s, monotonic], reads no clock.
 
-    ``judge`` leaves everything as it was but the search for a clock that was set back; ``hold``
-    takes the judged sample over. ``delay_s`` [s] is how much longer the held sample took than the
-    quickest one; ``steps_back`` counts clocks that were set back. One that was set forward shows
-    in a sample that is quicker than any before by more than the age limit: no delay can have been
-    that long, since what is delayed by more is refused.
+    ``judge`` leaves everything as it was but the search for another clock; ``hold`` takes the
+    judged sample over. ``delay_s`` [s] is how much longer the held sample took than the quickest
+    one; ``steps_back`` counts clocks that were set back. One that was set forward shows in a
+    sample that is quicker than any before by more than the age limit: no delay was that long,
+    since what is delayed by more is refused.
     """
 
     def __init__(self, age_limit_s: float = math.inf) -> None:
@@ -47,16 +44,20 @@ class StampGate:
     def forget(self) -> None:
         """Hold nothing: the next sample is taken whatever its stamp."""
         self.delay_s = self._new_delay_s = 0.0
-        self._has_stepped = False
-        self._held = b""
+        self._held, self._has_stepped = b"", False
         self._held_ns = -1
         self._held_at = -math.inf
-        self._older_ns = -1
-        self._older_since = math.inf
-        self._older_at = -math.inf
+        self._search = ClockSearch(self.limit_s)
 
-    def judge(self, stamp: Time, data: bytes, now: float) -> SampleReason | None:
-        """Say why a sample is refused, None when its stamp is good."""
+    def judge(
+        self, stamp: Time, data: bytes, now: float, is_successor: bool = False
+    ) -> SampleReason | None:
+        """Say why a sample is refused, None when its stamp is good.
+
+        ``is_successor``: another publisher than that of the held sample sent it, perhaps by
+        another clock. Its delay counts from zero, but a sample that looks delayed beyond the
+        limit may be one from before: only stamps that go on show that it is the clock.
+        """
         sec, nanosec = stamp
         if sec < 0 or nanosec >= NANOSECONDS or not (sec or nanosec):
             return SampleReason.BAD_STAMP
@@ -71,25 +72,20 @@ class StampGate:
         if since_s > BEGIN_ANEW_S:
             return None
         if step_ns < 0:
-            return self._judge_older(stamp_ns, now)
+            return self._judge_misfit(SampleReason.OLDER, stamp_ns, now)
         delay_s = self.delay_s + since_s * (1.0 - FORGET_RATE) - step_ns * 1e-9
         if delay_s > self.limit_s:
-            return SampleReason.DELAYED
-        if delay_s > 0.0:
+            late = SampleReason.DELAYED
+            return self._judge_misfit(late, stamp_ns, now) if is_successor else late
+        if delay_s > 0.0 and not is_successor:
             self._new_delay_s = delay_s
-        else:
-            self._has_stepped = delay_s < -self.limit_s
+        self._has_stepped = delay_s < -self.limit_s
         return None
 
-    def _judge_older(self, stamp_ns: int, now: float) -> SampleReason | None:
-        if now > self._older_at:  # of one tick the newest comes first, and it alone tells
-            if stamp_ns <= self._older_ns or self._older_ns < 0:
-                self._older_since = now
-            self._older_ns, self._older_at = stamp_ns, now
+    def _judge_misfit(self, reason: SampleReason, stamp_ns: int, now: float) -> SampleReason | None:
         is_sent_on_change = self.limit_s == math.inf  # refused, it would not be told again
-        searched_s = now - self._older_since
-        if not is_sent_on_change and searched_s < self.limit_s * STEP_BACK_SHARE:
-            return SampleReason.OLDER
+        if not is_sent_on_change and not self._search.finds(stamp_ns, now):
+            return reason
         self._has_stepped = True
         return None
 
@@ -104,7 +100,7 @@ class StampGate:
             self.step_told_until = now + STEP_TOLD_S
         self._held, self._held_ns, self._held_at = data, self.stamp_ns, now
         self.delay_s = self._new_delay_s
-        self._older_ns, self._older_at = -1, -math.inf
+        self._search.seen_at = -math.inf
 
 
 _AFTER_STAMP = 12

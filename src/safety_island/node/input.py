@@ -154,7 +154,8 @@ class Input:
         """Pass a sample through the gate to the controllers; return why it did not get there."""
         if not self.writers.takes(guid):
             return SampleReason.OTHER_PUBLISHER
-        reason = self.stamps.judge(message.stamp, data, now)
+        is_successor = guid != self.source_guid
+        reason = self.stamps.judge(message.stamp, data, now, is_successor)
         if reason is None and self._check is not None:
             reason = self._check(message, data, self.stamps)
         if reason is None and (verdict := self._offer(message)):

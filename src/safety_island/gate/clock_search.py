@@ -1,0 +1,31 @@
+"""Another clock, or samples from the past? The stamps of a clock go on."""
+
+from __future__ import annotations
+
+import math
+
+SEARCH_SHARE = 0.5
+"""Share of the age limit for which stamps that do not fit must keep advancing until they count as
+a clock (set back, or a successor's) rather than as samples that were overtaken or held up."""
+
+
+class ClockSearch:
+    """Looks at stamps that do not fit what is held; told the time [s, monotonic].
+
+    It begins anew with a stamp that does not advance, and after a gap of the age limit [s].
+    ``seen_at`` is the time of the last stamp; -inf ends the search.
+    """
+
+    def __init__(self, limit_s: float) -> None:
+        self.seen_at = -math.inf
+        self._limit_s = limit_s
+        self._stamp_ns = 0
+        self._since = 0.0
+
+    def finds(self, stamp_ns: int, now: float) -> bool:
+        """Whether stamps have advanced for long enough, up to this one."""
+        if now > self.seen_at:  # of one tick the newest comes first, and it alone tells
+            if stamp_ns <= self._stamp_ns or now - self.seen_at > self._limit_s:
+                self._since = now
+            self._stamp_ns, self.seen_at = stamp_ns, now
+        return now - self._since >= self._limit_s * SEARCH_SHARE

@@ -1,0 +1,50 @@
+"""Stamps that do not fit: a clock goes on, samples from the past do not."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from safety_island.gate.clock_search import SEARCH_SHARE, ClockSearch
+
+Seen = tuple[int, float]
+"""Stamp [ns] and time of arrival [s]."""
+
+
+def found(*seen: Seen) -> list[bool]:
+    search = ClockSearch(0.5)
+    return [search.finds(stamp_ns, now) for stamp_ns, now in seen]
+
+
+def test_stamps_that_advance_for_half_the_limit_are_a_clock() -> None:
+    assert SEARCH_SHARE == 0.5
+    assert found((5, 9.0), (6, 9.125), (7, 9.25), (8, 9.375)) == [False, False, True, True]
+    assert found((5, 9.0), (6, 9.2499)) == [False, False]
+
+
+@pytest.mark.parametrize("second", [4, 5])
+def test_one_that_does_not_advance_begins_anew(second: int) -> None:
+    assert found((5, 9.0), (second, 9.25), (6, 9.375), (7, 9.5)) == [False, False, False, True]
+
+
+def test_a_gap_beyond_the_limit_begins_anew() -> None:
+    assert found((5, 9.0), (6, 9.5)) == [False, True]
+    assert found((5, 9.0), (6, 9.5001), (7, 9.7501)) == [False, False, True]
+
+
+def test_of_one_tick_the_first_alone_tells() -> None:
+    assert found((5, 9.0), (4, 9.0), (3, 9.0), (6, 9.25)) == [False, False, False, True]
+
+
+def test_the_end_of_a_search() -> None:
+    search = ClockSearch(0.5)
+    assert not search.finds(5, 9.0)
+    search.seen_at = -math.inf
+    assert not search.finds(6, 9.25)
+
+
+def test_without_an_age_limit_nothing_is_ever_found() -> None:
+    search = ClockSearch(math.inf)
+    assert not search.finds(5, 9.0)
+    assert not search.finds(6, 1e9)
