@@ -53,7 +53,7 @@ FAULTS: dict[int, tuple[str, str, str]] = {
     15: ("flipped bits", "refused, or finite and in range", "0"),
     16: ("length 2^32 - 1", "refused, no memory", "0"),
     17: ("fragment missing", "the sample is a lost one", "A + T + 20 ms"),
-    18: ("another type on the topic", "no match", "discovery"),
+    18: ("another type on the topic", "no match, logged", "discovery"),
     19: ("other encapsulation", "big endian read, others refused", "0"),
     20: ("NaN or Inf in a used field", "refused, no trace left", "1 tick"),
     21: ("huge or subnormal number", "refused; the zero that it is", "1 tick"),

@@ -136,16 +136,24 @@ def test_row_16_an_endless_length(participant: NewParticipant, length: int, at: 
 
 @EACH
 def test_row_18_a_writer_of_another_type(entry: TopicEntry, participant: NewParticipant) -> None:
-    """It never matches, so it is no second publisher, and nothing of it arrives."""
+    """It never matches, so it is no second publisher, nothing of it arrives, and it is told."""
     live = Live(participant, entry)
     other = participant("wrong_type")
-    publisher = other.publisher(entry.name, "tier4_debug_msgs/msg/Float64Stamped")
+    wrong = "tier4_debug_msgs/msg/Float64Stamped"
+    publisher = other.publisher(entry.name, wrong)
     before = live.item.subscription.received
     for _ in range(5):
         publisher.write(bytes(20))
         live.round()
     assert publisher.matched() == 0
     assert live.item.subscription.received >= before
+    told = f"{publisher.guid.hex()} has type {wrong}, expected {entry.type_name}"
+
+    def is_told() -> bool:
+        live.round()
+        return any(f"{entry.name}: publisher {told}" in line for line in live.platform.logger.lines)
+
+    wait_for(is_told)
     live.goes_on()
 
 

@@ -1,6 +1,8 @@
-"""Who else is in the domain: other islands, and the publishers of our inputs."""
+"""Who else is in the domain: other islands, publishers of our inputs, and who does not match."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 from safety_island.dds import topics
 from safety_island.life_cycle.island_watch import IslandWatch
@@ -31,6 +33,7 @@ class Identity:
         self._transport, self._inputs, self._logger = transport, inputs, logger
         self._keeps_first = parameters.gate.second_publisher == "keep_first"
         self._changes = -1
+        self._mismatches: Sequence[str] = ()
 
     def look(self, now: float) -> None:
         """Take what discovery has found since the last tick [s, monotonic]."""
@@ -44,6 +47,15 @@ class Identity:
             self._logger.warning("another publisher is on %s", entry.name)
         self.islands.update(others, now)
         self._inputs.discover(now)
+        self._tell_mismatches()
+
+    def _tell_mismatches(self) -> None:
+        """Log each of them once, and not more often than throttled for each topic."""
+        before, self._mismatches = self._mismatches, self._transport.mismatches()
+        for line in self._mismatches:
+            if line not in before:
+                topic = line.partition(":")[0]
+                self._logger.warning("%s", line, throttled=True, site=f"{topic} mismatch")
 
     def blocked(self, now: float) -> Reason:
         """Why nothing may be sent because of other islands, NONE when it may."""

@@ -141,6 +141,10 @@ class MemoryDomain:
         """Return the publishers on a topic, of every node in this domain."""
         return self._topics[topic].writers if topic in self._topics else frozenset()
 
+    def mismatches(self) -> Sequence[str]:
+        """Nothing: another type on a topic is an error of its publisher here."""
+        return ()
+
     def _forget(self, found: _Topic, writer: MemoryPublisher) -> None:
         found.writers -= {writer.guid}
         if writer in found.latched:

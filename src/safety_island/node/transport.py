@@ -76,6 +76,12 @@ class Transport(Protocol):
         A transport that is shared by several nodes counts all of them.
         """
 
+    def mismatches(self) -> Sequence[str]:
+        """Say, one line each that begins with the topic, which endpoints of others do not match.
+
+        Their type is another one than ours, or their QoS offers less than is requested.
+        """
+
     def close(self) -> None:
         """Leave the domain."""
 
