@@ -49,7 +49,6 @@ def test_every_list_of_the_parameters_is_a_column() -> None:
 @pytest.mark.parametrize(
     ("value", "bounds", "expected"),
     [
-        (0.0, [], (0.0, 0)),
         (1.0, [(1, 1.0, 2.0), (2, 0.0, 1.0)], (1.0, 0)),
         (3.0, [(1, 1.0, 2.0)], (2.0, 1)),
         (0.0, [(1, 1.0, 2.0)], (1.0, 1)),
@@ -62,7 +61,8 @@ def test_every_list_of_the_parameters_is_a_column() -> None:
     ],
 )
 def test_confine(value: float, bounds: list[tuple[int, float, float]], expected: object) -> None:
-    assert confine(value, bounds) == expected
+    bits, lows, highs = zip(*bounds, strict=True)
+    assert confine(value, (bits, lows, highs)) == expected
 
 
 @pytest.mark.parametrize(

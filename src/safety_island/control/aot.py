@@ -51,6 +51,16 @@ def sources_hash() -> str:
     return digest.hexdigest()
 
 
+def require_records(place: str, dtype: Any, array: Any) -> None:
+    """Raise TypeError, which names ``place``, unless a kernel can take the array as records."""
+    is_records = isinstance(array, np.ndarray) and array.dtype == dtype
+    if not is_records or array.ndim != 1 or not len(array):
+        kind = f"{array.dtype} {array.shape}" if isinstance(array, np.ndarray) else repr(array)
+        raise TypeError(f"{place} is {kind:.200}, expected (n,) of {dtype}")
+    if not array.flags.carray:
+        raise TypeError(f"{place} must be contiguous, aligned and writeable")
+
+
 class _Addresses:
     """Turns record arrays of one type into addresses; an array is looked at once in its life."""
 
@@ -66,12 +76,7 @@ class _Addresses:
         return found[0] if found is not None else self._look(key, array)
 
     def _look(self, key: int, array: Any) -> int:
-        is_records = isinstance(array, np.ndarray) and array.dtype == self._dtype
-        if not is_records or array.ndim != 1 or not len(array):
-            kind = f"{array.dtype} {array.shape}" if isinstance(array, np.ndarray) else repr(array)
-            raise TypeError(f"{self._place} is {kind:.200}, expected (n,) of {self._dtype}")
-        if not array.flags.carray:
-            raise TypeError(f"{self._place} must be contiguous, aligned and writeable")
+        require_records(self._place, self._dtype, array)
         address = int(array.ctypes.data)
         forget = weakref.ref(array, lambda _: self._known.pop(key, None))
         self._known[key] = (address, forget)

@@ -11,6 +11,7 @@ import math
 from collections.abc import Callable
 from functools import partial
 from struct import Struct
+from typing import NamedTuple
 
 import numpy as np
 
@@ -61,6 +62,15 @@ def _refusal_of(value: float) -> Refusal:
     return Refusal.OUT_OF_RANGE if math.isfinite(value) else Refusal.NOT_FINITE
 
 
+class _Path(NamedTuple):
+    """Memory of a trajectory, and the kernels that read it."""
+
+    points: Records
+    check: Callable[[int], int]
+    lateral: Callable[[float], int]
+    longitudinal: Callable[[float], int]
+
+
 class TrajectoryFollower:
     """Autoware's MPC and PID controllers, with the memory of all past ticks.
 
@@ -75,8 +85,6 @@ class TrajectoryFollower:
         self.parameters = parameters
         self.inputs: Records = np.zeros(1, INPUTS)
         self.inputs[0].qw = 1.0
-        self.points = new_points()
-        self.incoming = new_points()
         self.command: Records = np.zeros(1, COMMAND)
         self._stamp = self.command["stamp"]
         self.trace: Records = np.zeros(1, TRACE)
@@ -97,8 +105,28 @@ class TrajectoryFollower:
         )
         self._qp: Records = np.zeros(1, QP)
         self._solve = self._external_solver()
-        for kernel in (check_trajectory, lateral_step, longitudinal_step):
-            kernel.prepare()
+        self._now, self._next = self._new_path(), self._new_path()
+        """The trajectory in force, and the one that comes after it; they change places."""
+
+    def _new_path(self) -> _Path:
+        points, params = new_points(), self._params
+        before, after = (params, points, self.inputs), (self.command, self.trace)
+        return _Path(
+            points,
+            check_trajectory.bind(params, points),
+            lateral_step.bind(*before, self._lateral, self._qp, *after),
+            longitudinal_step.bind(*before, self._longitudinal, self._work, *after),
+        )
+
+    @property
+    def points(self) -> Records:
+        """The trajectory in force."""
+        return self._now.points
+
+    @property
+    def incoming(self) -> Records:
+        """Memory of the next one."""
+        return self._next.points
 
     def _external_solver(self) -> Callable[[Records, int], MpcStatus] | None:
         """The solver that is no kernel, when one is chosen."""
@@ -124,9 +152,9 @@ class TrajectoryFollower:
         """Offer the first ``n`` points of ``incoming``, into which a decoder may write directly."""
         if not math.isfinite(stamp):
             return Refusal.NOT_FINITE
-        if refusal := check_trajectory.call(self._params, self.incoming, n):
+        if refusal := self._next.check(n):
             return Refusal(refusal)
-        self.points, self.incoming = self.incoming, self.points
+        self._now, self._next = self._next, self._now
         self._cells["n_points"][0] = n
         self._cells["trajectory_id"][0] += 1
         self._cells["trajectory_stamp"][0] = stamp
@@ -148,10 +176,10 @@ class TrajectoryFollower:
         wz: float,
     ) -> Refusal:
         """Offer the ego's pose in the map [m] and its body velocity [m/s, rad/s]."""
-        place = max(abs(x), abs(y), abs(z))
-        speed = max(abs(vx), abs(vy))
-        total = x + y + z + vx + vy + wz  # finds the NaN that max may hide
-        if not (place <= MAX_POSITION and speed <= MAX_SPEED and abs(wz) <= MAX_TURN):
+        total = x + y + z + vx + vy + wz  # finds the NaN that min and max may hide
+        is_near = min(x, y, z) >= -MAX_POSITION and max(x, y, z) <= MAX_POSITION
+        is_slow = min(vx, vy) >= -MAX_SPEED and max(vx, vy) <= MAX_SPEED
+        if not (is_near and is_slow and -MAX_TURN <= wz <= MAX_TURN):
             return _refusal_of(total)
         square = qx * qx + qy * qy + qz * qz + qw * qw
         if not (MIN_SQUARE_NORM <= square <= MAX_SQUARE_NORM and math.isfinite(total)):
@@ -209,17 +237,7 @@ class TrajectoryFollower:
     def run_lateral(self, now: float) -> MpcStatus:
         """Run the lateral controller at ``now`` [s]; NO_REFERENCE leaves the command alone."""
         if self._solve is None:
-            status = lateral_step.call(
-                self._params,
-                self.points,
-                self.inputs,
-                self._lateral,
-                self._qp,
-                self.command,
-                self.trace,
-                now,
-            )
-            return _MPC_STATUS[status]
+            return _MPC_STATUS[self._now.lateral(now)]
         return self._run_lateral_in_parts(self._solve, now)
 
     def _run_lateral_in_parts(
@@ -236,16 +254,7 @@ class TrajectoryFollower:
 
     def run_longitudinal(self, now: float) -> int:
         """Run the longitudinal controller at ``now`` [s]; a LongitudinalState, or a skip (< 0)."""
-        return longitudinal_step.call(
-            self._params,
-            self.points,
-            self.inputs,
-            self._longitudinal,
-            self._work,
-            self.command,
-            self.trace,
-            now,
-        )
+        return self._now.longitudinal(now)
 
     def sync(self) -> None:
         """Hand each controller what the other needs in the next tick."""

@@ -18,6 +18,8 @@ BEGIN_ANEW_S = 10.0
 FORGET_RATE = 0.001
 """Rate [s/s] at which a delay is forgotten: two clocks may drift apart by 1000 ppm at most."""
 
+_REMEMBERED = 1.0 - FORGET_RATE
+
 STEP_TOLD_S = 1.0
 """Time [s] for which a step of the sender's clock is told."""
 
@@ -59,32 +61,39 @@ class StampGate:
         limit may be one from before: only stamps that go on show that it is the clock.
         """
         sec, nanosec = stamp
-        if sec < 0 or nanosec >= NANOSECONDS or not (sec or nanosec):
-            return SampleReason.BAD_STAMP
         self.stamp_ns = stamp_ns = sec * NANOSECONDS + nanosec
-        step_ns = stamp_ns - self._held_ns
+        step_ns, since_s = stamp_ns - self._held_ns, now - self._held_at
+        delay_s = self.delay_s + since_s * _REMEMBERED - step_ns * 1e-9
+        is_usual = step_ns > 0 and -self.limit_s <= delay_s <= self.limit_s and not is_successor
+        if is_usual and since_s <= BEGIN_ANEW_S and nanosec < NANOSECONDS:
+            self._new_delay_s = delay_s if delay_s > 0.0 else 0.0
+            self._has_stepped = False
+            return None
+        if stamp_ns <= 0 or nanosec >= NANOSECONDS:
+            return SampleReason.BAD_STAMP
         if step_ns == 0:
             same = data == self._held
             return SampleReason.DUPLICATE if same else SampleReason.STAMP_STANDS_STILL
-        since_s = now - self._held_at
+        return self._judge_unusual(step_ns, delay_s, now, is_successor)
+
+    def _judge_unusual(
+        self, step_ns: int, delay_s: float, now: float, is_successor: bool
+    ) -> SampleReason | None:
         self._new_delay_s = 0.0
         self._has_stepped = False
-        if since_s > BEGIN_ANEW_S:
+        if now - self._held_at > BEGIN_ANEW_S:
             return None
         if step_ns < 0:
-            return self._judge_misfit(SampleReason.OLDER, stamp_ns, now)
-        delay_s = self.delay_s + since_s * (1.0 - FORGET_RATE) - step_ns * 1e-9
+            return self._judge_misfit(SampleReason.OLDER, now)
         if delay_s > self.limit_s:
             late = SampleReason.DELAYED
-            return self._judge_misfit(late, stamp_ns, now) if is_successor else late
-        if delay_s > 0.0 and not is_successor:
-            self._new_delay_s = delay_s
+            return self._judge_misfit(late, now) if is_successor else late
         self._has_stepped = delay_s < -self.limit_s
         return None
 
-    def _judge_misfit(self, reason: SampleReason, stamp_ns: int, now: float) -> SampleReason | None:
+    def _judge_misfit(self, reason: SampleReason, now: float) -> SampleReason | None:
         is_sent_on_change = self.limit_s == math.inf  # refused, it would not be told again
-        if not is_sent_on_change and not self._search.finds(stamp_ns, now):
+        if not is_sent_on_change and not self._search.finds(self.stamp_ns, now):
             return reason
         self._has_stepped = True
         return None

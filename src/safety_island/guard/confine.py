@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import copysign
 
-Bound = tuple[int, float, float]
-"""The bit of a limit, the lowest and the highest value that it allows."""
+Bounds = tuple[Sequence[int], Sequence[float], Sequence[float]]
+"""Intervals, the weakest first: bits of the limits, their lowest and their highest values."""
 
 
-def confine(value: float, bounds: Sequence[Bound]) -> tuple[float, int]:
+def confine(value: float, bounds: Bounds) -> tuple[float, int]:
     """Return the value moved into each interval in turn, and the bits of the limits that acted.
 
     When the intervals have values in common the result is one of them, whatever their order: moving
@@ -17,15 +17,15 @@ def confine(value: float, bounds: Sequence[Bound]) -> tuple[float, int]:
     none in common the last interval holds. A limit acts when it moves the value, or when the value
     as it was proposed breaks it.
     """
-    for _, low, high in bounds:
-        if not low <= value <= high:
-            return _moved(value, bounds)
-    return value, 0
+    _, lows, highs = bounds
+    if max(lows) <= value <= min(highs):
+        return value, 0
+    return _moved(value, bounds)
 
 
-def _moved(value: float, bounds: Sequence[Bound]) -> tuple[float, int]:
+def _moved(value: float, bounds: Bounds) -> tuple[float, int]:
     confined, bits = value, 0
-    for bit, low, high in bounds:
+    for bit, low, high in zip(*bounds, strict=True):
         if not low <= value <= high or not low <= confined <= high:
             bits |= bit
         confined = min(max(confined, low), high)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import atan, inf, isfinite, nan, tan
 
-from safety_island.guard.confine import Bound, confine, share, within
+from safety_island.guard.confine import Bounds, confine, share, within
 from safety_island.guard.limit import Limit, Verdict
 from safety_island.guard.params import GuardParams
 from safety_island.guard.proposal import Decision, Proposal
@@ -26,6 +26,9 @@ _LATERAL, _LATERAL_JERK = int(Limit.LATERAL_ACCELERATION), int(Limit.LATERAL_JER
 _ACCELERATION, _JERK = int(Limit.ACCELERATION), int(Limit.JERK)
 _NOT_FINITE, _STALE, _SEQUENCE = int(Limit.NOT_FINITE), int(Limit.STALE), int(Limit.SEQUENCE)
 _PASSED, _CLAMPED, _REFUSED = Verdict
+_ANGLES = (_DISTANCE, _LATERAL, _LATERAL_JERK, _RATE, _ANGLE)
+_AT_FIRST = (_DISTANCE, _LATERAL, _ANGLE)
+_PUSHES = (_JERK, _ACCELERATION, _VELOCITY)
 
 
 _Sent = tuple[float, float, float, float]
@@ -112,7 +115,7 @@ class Guard:
 
     def _angles(
         self, limits: Limits, speed: float, steering: float, distance: float, step: float
-    ) -> tuple[Bound, ...]:
+    ) -> Bounds:
         """Return what the steering angle must keep, the weakest first.
 
         One wrong measurement must not make the wheel jump, so what depends on measurements gives
@@ -122,17 +125,16 @@ class Guard:
         # tan(angle) for a lateral acceleration of 1 m/s^2: the bicycle model, without slip
         per_lateral = self._wheel_base / max(speed * speed, STANDSTILL)
         steepest = atan(lateral * per_lateral)
-        near = (_DISTANCE, steering - distance, steering + distance)
-        level = (_LATERAL, -steepest, steepest)
-        possible = (_ANGLE, -largest, largest)
         if self._sent is None:
-            return near, level, possible
+            farthest = (steering + distance, steepest, largest)
+            return _AT_FIRST, (steering - distance, -steepest, -largest), farthest
         _, before, slope, _ = self._sent
         rise, turn = jerk * step * per_lateral, rate * step
-        smooth = (_LATERAL_JERK, atan(slope - rise), atan(slope + rise))
-        return near, level, smooth, (_RATE, before - turn, before + turn), possible
+        lows = (steering - distance, -steepest, atan(slope - rise), before - turn, -largest)
+        highs = (steering + distance, steepest, atan(slope + rise), before + turn, largest)
+        return _ANGLES, lows, highs
 
-    def _accelerations(self, limits: Limits, may_drive: bool, step: float) -> list[Bound]:
+    def _accelerations(self, limits: Limits, may_drive: bool, step: float) -> Bounds:
         """Return what the acceleration must keep, the weakest first.
 
         A vehicle above the largest speed, or told to go the other way than it rolls, may only slow
@@ -141,10 +143,9 @@ class Guard:
         that asks for none, so no clamp makes driving out of braking.
         """
         _, _, _, _, _, _, drive, brake, rise, fall = limits
-        bounds = [(_ACCELERATION, -brake, drive)]
+        lowest, highest = -inf, inf
         if self._sent is not None:
             before = self._sent[3]
-            bounds.insert(0, (_JERK, min(before - fall * step, 0.0), before + rise * step))
-        if not may_drive:
-            bounds.append((_VELOCITY, -inf, 0.0))
-        return bounds
+            lowest, highest = min(before - fall * step, 0.0), before + rise * step
+        lows, highs = (lowest, -brake, -inf), (highest, drive, inf if may_drive else 0.0)
+        return _PUSHES, lows, highs

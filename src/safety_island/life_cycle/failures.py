@@ -35,8 +35,8 @@ class Failures:
     def are_none(self, facts: Facts) -> bool:
         """Whether nothing went wrong in this tick, and nothing is still counted from before."""
         wrong = facts.failed or facts.unsolved or facts.refused or self._overrun.over
-        counts = (self._faults, self._unsolved, self._refusals, self._outputs, self._crashes)
-        return not wrong and not any([streak.count for streak in counts])
+        controls = self._faults.count or self._unsolved.count or self._refusals.count
+        return not (wrong or controls or self._outputs.count or self._crashes.count)
 
     def judge(self, facts: Facts, now: float) -> Reason:
         """Count what went wrong in this tick; return what that forbids, NONE when nothing."""

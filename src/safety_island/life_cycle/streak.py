@@ -17,12 +17,12 @@ class Streak:
 
     def note(self, failed: bool, now: float) -> None:
         """Note one more time; a success ends the streak."""
-        if not failed:
+        if failed:
+            if not self.count:
+                self.since = now
+            self.count += 1
+        elif self.count:
             self.forget()
-            return
-        if not self.count:
-            self.since = now
-        self.count += 1
 
     def lasts_s(self, now: float) -> float:
         """Time [s] since its first failure; 0 when there is none."""

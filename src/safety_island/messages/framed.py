@@ -25,7 +25,7 @@ def little_endian(data: bytes, type_name: str) -> bytes:
 def decode_stamp(data: bytes, type_name: str) -> Time:
     """Return the stamp that stands first in a message."""
     try:
-        return Time(*_TIME.unpack_from(data, HEADER_SIZE))
+        return tuple.__new__(Time, _TIME.unpack_from(data, HEADER_SIZE))
     except error:
         raise wire.truncated(type_name, HEADER_SIZE + _TIME.size, len(data)) from None
 

@@ -117,7 +117,7 @@ def _layout(data: bytes) -> _Layout:
         if count == 0:
             wire.check_end(data, count_at + 4, TRAJECTORY)
             return stamp, frame_id, 0, Time(), 0
-        first_time = Time(*_TIME.unpack_from(data, count_at + 4))
+        first_time = tuple.__new__(Time, _TIME.unpack_from(data, count_at + 4))
     except error:
         raise wire.truncated(TRAJECTORY, count_at + 12, len(data)) from None
     start = wire.aligned(count_at + 12, 8)

@@ -21,6 +21,7 @@ class Checked(NamedTuple):
 
 
 _PASSED, _CLAMPED, _ = Verdict
+_NONE, _PUBLISHED = Reason.NONE, Outcome.PUBLISHED
 
 
 class CommandCheck:
@@ -50,7 +51,7 @@ class CommandCheck:
         decision = self._guard.check(proposal, speed, steering, engaged)
         self.verdict, self.limits = decision.verdict, decision.limits
         if decision.verdict is _PASSED:
-            return Checked(command)
+            return tuple.__new__(Checked, (command, _NONE, _PUBLISHED, ""))
         if decision.verdict is _CLAMPED:
             return self._clamp(command, decision[2:])
         return self._refuse(command, now - self._timeout_s)

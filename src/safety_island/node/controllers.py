@@ -66,7 +66,7 @@ class Controllers:
         follower.sync()
         command = tuple.__new__(Computed, self._command())
         if status is _SOLVED:
-            return Ran(command)
+            return tuple.__new__(Ran, (command, "", False))
         reason = status.name.lower().replace("_", " ")
         self._logger.warning("no new steering angle: %s", reason, throttled=True, site="mpc")
         return Ran(command, unsolved=True)

@@ -90,12 +90,8 @@ class Input:
             return 0
         refused = 0
         self.rate.note(len(samples), now)
-        if self.writers.others:
-            samples, refused = self._without_foreign(samples)
-        if len(samples) > 1:
-            self.superseded += len(samples) - 1
-            self.overtaken += overtaken(samples)
-            samples = newest_first(samples)
+        if len(samples) > 1 or self.writers.others:
+            samples, refused = self._select(samples)
         for sample in samples:
             if self._accept(sample, now):
                 self.accepted_at = since
@@ -103,6 +99,15 @@ class Input:
                 break
             refused += 1
         return refused
+
+    def _select(self, samples: Sequence[Sample]) -> tuple[Sequence[Sample], int]:
+        """Return the samples to be looked at, the newest first, and how many others published."""
+        found, foreign = samples, 0
+        if self.writers.others:
+            found, foreign = self._without_foreign(samples)
+        self.superseded += max(len(found) - 1, 0)
+        self.overtaken += overtaken(found)
+        return newest_first(found), foreign
 
     def _without_foreign(self, samples: Sequence[Sample]) -> tuple[Sequence[Sample], int]:
         """Leave out what others published, so that it cannot crowd out the owner's samples."""
@@ -112,7 +117,7 @@ class Input:
                 found.append(sample)
             else:
                 self._other = sample
-                self._refuse(SampleReason.OTHER_PUBLISHER, "other publisher")
+                self._refuse(SampleReason.OTHER_PUBLISHER)
         return found, len(samples) - len(found)
 
     def hand_over(self, now: float) -> None:
@@ -129,40 +134,36 @@ class Input:
         self.accepted_at = -math.inf
 
     def _accept(self, sample: Sample, now: float) -> bool:
+        """Pass a sample through the gate to the controllers; whether it got there."""
         data, guid = sample.data, sample.writer_guid
         self.taken, self.writer_guid = sample, guid
+        stamps = self.stamps
         try:
             message = self._decode(data)
-            reason = self._judge(message, data, guid, now)
+            if not self.writers.takes(guid):
+                self._other = sample
+                return self._refuse(SampleReason.OTHER_PUBLISHER)
+            reason = stamps.judge(message.stamp, data, now, guid != self.source_guid)
+            if reason is None and self._check is not None:
+                reason = self._check(message, data, stamps)
+            if reason is not None:
+                return self._refuse(reason)
+            if verdict := self._offer(message):
+                return self._refuse(SampleReason[verdict.name])
         except DecodeError as error:
             return self._refuse(SampleReason[error.reason.name], str(error))
         except MemoryError:
             raise
         except Exception as error:  # a fault of ours must not let one topic stop the ticks
             return self._refuse(SampleReason.FAULT, describe(error))
-        if reason is not None:
-            if reason is SampleReason.OTHER_PUBLISHER:
-                self._other = sample
-            return self._refuse(reason, reason.name.lower().replace("_", " "))
-        self.stamps.hold(data, now)
+        stamps.hold(data, now)
         self.source_guid, self.message = guid, message
         self.accepted += 1
         self.refused_in_a_row = 0
         return True
 
-    def _judge(self, message: Any, data: bytes, guid: bytes, now: float) -> SampleReason | None:
-        """Pass a sample through the gate to the controllers; return why it did not get there."""
-        if not self.writers.takes(guid):
-            return SampleReason.OTHER_PUBLISHER
-        is_successor = guid != self.source_guid
-        reason = self.stamps.judge(message.stamp, data, now, is_successor)
-        if reason is None and self._check is not None:
-            reason = self._check(message, data, self.stamps)
-        if reason is None and (verdict := self._offer(message)):
-            return SampleReason[verdict.name]
-        return reason
-
-    def _refuse(self, reason: SampleReason, detail: str) -> bool:
+    def _refuse(self, reason: SampleReason, detail: str = "") -> bool:
+        detail = detail or reason.name.lower().replace("_", " ")
         self.refused[reason] += 1
         self.refused_count += 1
         self.refused_in_a_row += 1

@@ -28,6 +28,7 @@ _NONE, _AUTONOMOUS = Reason.NONE, int(Mode.AUTONOMOUS)
 _PLACES = range(len(INPUTS))
 _SIGNS = attrgetter("rate.too_low", "stamps.delay_s", "writers.others")
 """Of an input: what is not zero when rate, delay or publishers may be worth a warning."""
+_ACCEPTED_AT = attrgetter("accepted_at")
 _CLOCK_STEP, _CLOCK_GAP = attrgetter("stamps.step_told_until"), attrgetter("clock_gap_s")
 
 NO_SUBJECT = 255
@@ -99,7 +100,7 @@ class InputSet:
 
     def measure(self, now: float) -> None:
         """Take the age of each."""
-        self.ages_s = [now - item.accepted_at for item in self.items]
+        self.ages_s = list(map(now.__sub__, map(_ACCEPTED_AT, self.items)))
 
     def drop(self) -> None:
         """Drop what has waited while the process stood still; the operation mode stays."""

@@ -48,6 +48,7 @@ class StatusTopic(TopicWriter):
         self.memory_bytes = 0
         """Resident set size, as it was looked up last."""
         self._node, self._mode = node, int(node.mode)
+        self._overrun = node.life_cycle.overrun
         self._writer = writer = StatusWriter()
         self._stamp = writer.fields.stamp
         self._pack = writer.pack(*_SCALARS)
@@ -80,11 +81,12 @@ class StatusTopic(TopicWriter):
 
     def _fill_scalars(self, report: TickReport) -> None:
         node, command, (state, reason, cause) = self._node, report.command, report.life
-        check, overrun, mode = node.check, node.life_cycle.overrun, node.inputs.operation_mode
+        check, overrun, arming = node.check, self._overrun, node.arming
+        mode = node.inputs.operation_mode
         errors, solver, states, limits = self._trace.last
         sent = report.sent
         self._pack(
-            node.arming.nonce,
+            arming.nonce,
             report.number,
             self._commands,
             self.memory_bytes,
@@ -112,7 +114,7 @@ class StatusTopic(TopicWriter):
             *states,
             check.verdict,
             self._mode,
-            node.arming.result,
+            arming.result,
             min(len(node.identity.islands.others), 255),
             overrun.degraded,
             state in _ARMED,

@@ -56,12 +56,9 @@ class TraceStatus:
         """Take what the controllers did in this tick."""
         values = self._read()
         flags = values[_FLAGS:]
-        self.last = Traced(
-            values[:_SOLVER],
-            values[_SOLVER:_STATES],
-            values[_STATES:_FLAGS],
-            sum(compress(self._bits, flags)) if True in flags else 0,
-        )
+        limits = sum(compress(self._bits, flags)) if True in flags else 0
+        parts = values[:_SOLVER], values[_SOLVER:_STATES], values[_STATES:_FLAGS], limits
+        self.last = tuple.__new__(Traced, parts)
 
     def clear(self) -> None:
         """Note that the controllers did not run in this tick: no limit acted, the rest stays."""
