@@ -41,6 +41,7 @@ def test_what_has_no_stamp_comes_last() -> None:
     assert newest_first([at(0), BIG_ENDIAN]) == [at(0), BIG_ENDIAN]
     assert newest_first([at(0), CUT]) == [at(0), CUT]
     assert newest_first([CUT, Message(b"\1\0" + at(9).data[2:])])[1] == CUT
+    assert newest_first([CUT, at(-2)]) == [at(-2), CUT]
 
 
 def test_no_more_than_three_are_tried() -> None:
@@ -55,6 +56,7 @@ def test_samples_that_were_overtaken() -> None:
     assert overtaken([at(3, 5), at(3, 4)]) == 1
     assert overtaken([at(0), CUT]) == 1
     assert overtaken([CUT, BIG_ENDIAN]) == 0
+    assert overtaken([at(-3), at(-2), at(-3)]) == 1
 
 
 stamps = st.tuples(st.integers(-5, 5), st.integers(0, 5))

@@ -28,6 +28,13 @@ def test_the_share_that_counts(share: float, low: bool) -> None:
     assert meter.too_low is low
 
 
+def test_the_share_itself_is_not_too_low() -> None:
+    meter = RateMeter(8.0)
+    meter.note(1, 0.0)
+    meter.note(WINDOW, WINDOW / (LOWEST_SHARE * 8.0) * WINDOW / WINDOW)
+    assert not meter.too_low
+
+
 def test_the_next_window_says_anew() -> None:
     meter = RateMeter(8.0)
     end = feed(meter, 101, 2 * T)

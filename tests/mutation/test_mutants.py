@@ -68,10 +68,14 @@ def test_every_room_has_sources_and_tests() -> None:
 
 def test_every_reason_belongs_to_a_line_that_stands() -> None:
     """A reason whose line is gone is taken out, lest it excuse something else one day."""
-    for (file, source, change), reason in read_excuses().items():
-        assert reason
-        found = mutants(file, (ROOT / file).read_text("utf-8"))
-        assert any((m.source, m.change) == (source, change) for m in found), (file, source, change)
+    excuses = read_excuses()
+    found = {
+        (file, m.source, m.change)
+        for file in {file for file, _, _ in excuses}
+        for m in mutants(file, (ROOT / file).read_text("utf-8"))
+    }
+    assert all(excuses.values())
+    assert set(excuses) <= found, set(excuses) - found
 
 
 def test_the_score_leaves_out_what_is_equivalent() -> None:

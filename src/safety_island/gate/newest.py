@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from struct import Struct
 from typing import Protocol, TypeVar
@@ -10,6 +11,8 @@ from safety_island.messages.wire import CDR_LE, HEADER_SIZE
 
 _STAMP = Struct("<iI")
 _SMALLEST = HEADER_SIZE + _STAMP.size
+_NO_STAMP: tuple[float, ...] = (-math.inf,)
+"""Is lower than every stamp (seconds, nanoseconds)."""
 
 TRIES = 3
 """How many samples of one tick are looked at, the newest first, until one is accepted."""
@@ -41,16 +44,17 @@ def newest_first(samples: Sequence[S]) -> Sequence[S]:
 
 def overtaken(samples: Sequence[S]) -> int:
     """Count the samples that arrived after one with a higher stamp."""
-    highest, count = (-1, 0), 0
+    highest, count = _NO_STAMP, 0
     for sample in samples:
         stamp = _stamp(sample.data)
-        count += stamp < highest
-        highest = max(highest, stamp)
+        if stamp < highest:
+            count += 1
+        else:
+            highest = stamp
     return count
 
 
-def _stamp(data: bytes) -> tuple[int, int]:
+def _stamp(data: bytes) -> tuple[float, ...]:
     if data[:2] != CDR_LE or len(data) < _SMALLEST:
-        return (-1, 0)
-    sec, nanosec = _STAMP.unpack_from(data, HEADER_SIZE)
-    return sec, nanosec
+        return _NO_STAMP
+    return _STAMP.unpack_from(data, HEADER_SIZE)
