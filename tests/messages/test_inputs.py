@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from safety_island.messages import codec, inputs
+from safety_island.messages.errors import DecodeError
 from safety_island.messages.wire import Time
 from tests.messages.oracle import rosbags_bytes
 from tests.messages.strategies import FLOAT32, FLOAT64, TEXTS, TIMES
@@ -50,6 +51,20 @@ def test_odometry(
     }
     assert data == rosbags_bytes(inputs.ODOMETRY, message)
     assert equal(inputs.decode_odometry(data), (stamp, frame, child, *n))
+
+
+def test_a_damaged_message_leaves_no_layout_behind() -> None:
+    """The layout of the message before is remembered: of the last whole one."""
+    ours, other = (
+        inputs.encode_odometry(inputs.Odometry(Time(1, 2), frame, "base", *map(float, range(13))))
+        for frame in ("map", "odom")
+    )
+    for data, frame in [(ours, "map"), (other[:-8], None), (ours, "map"), (other, "odom")]:
+        if frame is None:
+            with pytest.raises(DecodeError):
+                inputs.decode_odometry(data)
+        else:
+            assert inputs.decode_odometry(data)[:3] == (Time(1, 2), frame, "base")
 
 
 @many

@@ -120,5 +120,12 @@ def test_more_points_than_there_is_room_for_are_refused_by_number() -> None:
     assert (memory["x"] == -1.0).all()
 
 
+def test_a_frame_that_comes_back_is_its_own() -> None:
+    """The layout of the message before is remembered; an empty one between changes nothing."""
+    for frame, count in [("map", 2), ("odom", 0), ("map", 3), ("map", 0), ("odom", 1), ("map", 1)]:
+        found = decode_trajectory(encode_trajectory(STAMP, frame, points(count)))
+        assert (found.frame_id, len(found.points)) == (frame, count)
+
+
 def test_first_time_is_zero_when_it_is_not_given() -> None:
     assert decode_trajectory(encode_trajectory(STAMP, "map", points(2))).first_time == (0, 0)

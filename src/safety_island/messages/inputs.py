@@ -25,8 +25,7 @@ _ODOMETRY = Framed(ODOMETRY, 2, f"7d{_COVARIANCE}x6d{_COVARIANCE}x")
 _ACCELERATION = Framed(ACCELERATION, 1, f"6d{_COVARIANCE}x")
 _STEERING = Struct("<4siIf")
 _MODE = Struct("<4siIB6?")
-_MODE_FLAGS = slice(13, 19)
-_BOOLEANS = b"\x00\x01"
+_MODE_BODY = slice(12, 19)
 _ZEROS = (0.0,) * 36
 _new = tuple.__new__
 """The constructor that a NamedTuple writes for itself takes twice as long."""
@@ -136,10 +135,14 @@ def decode_operation_mode(data: bytes) -> OperationMode:
     """Return the state of an autoware_adapi_v1_msgs/msg/OperationModeState."""
     data = little_endian(data, OPERATION_MODE)
     wire.check_end(data, _MODE.size, OPERATION_MODE)
-    if surplus := data[_MODE_FLAGS].translate(None, _BOOLEANS):
-        wire.read_bool(surplus[0], OPERATION_MODE)
-    values = _MODE.unpack_from(data)
-    return _new(OperationMode, (_new(Time, values[1:3]), *values[3:]))
+    return _new(OperationMode, (_new(Time, _TIME.unpack_from(data, 4)), *_mode(data[_MODE_BODY])))
+
+
+@lru_cache(maxsize=64)
+def _mode(body: bytes) -> tuple[int | bool, ...]:
+    """Return mode and flags; there are few, told again and again."""
+    mode, *flags = body
+    return mode, *(wire.read_bool(flag, OPERATION_MODE) for flag in flags)
 
 
 def encode_operation_mode(state: OperationMode) -> bytes:

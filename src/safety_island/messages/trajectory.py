@@ -17,10 +17,11 @@ from safety_island.messages.wire import HEADER_LE, Time
 
 TRAJECTORY = "autoware_planning_msgs/msg/Trajectory"
 _U32 = Struct("<I")
-_FRAME = LeadingStrings(TRAJECTORY, 1)
+_FRAME_AT = wire.HEADER_SIZE + 8
 _NO_TIME = bytes(TIME_SIZE)
 _TIME = Struct("<iI")
 _POINT_SIZE = POINT.itemsize
+_new = tuple.__new__
 
 
 class Trajectory(NamedTuple):
@@ -46,7 +47,7 @@ def decode_trajectory(data: bytes, out: Points | None = None) -> Trajectory:
     untouched.
     """
     data = little_endian(data, TRAJECTORY)
-    stamp, frame_id, count, first_time, start = _layout(data)
+    stamp, frame_id, count, first_time, start = _read_head(data)
     if out is None:
         out = np.empty(count, POINT)
     elif count > len(out):
@@ -57,7 +58,7 @@ def decode_trajectory(data: bytes, out: Points | None = None) -> Trajectory:
         memory = _memory_of(out)
         memory[:size] = memoryview(data)[start : start + size]
         memory[size : size + TIME_SIZE] = _NO_TIME
-    return tuple.__new__(Trajectory, (stamp, frame_id, out[:count], first_time))
+    return _new(Trajectory, (stamp, frame_id, out[:count], first_time))
 
 
 _known: list[tuple[Points, memoryview[Any]]] = []
@@ -81,7 +82,7 @@ def view_trajectory(data: bytes) -> Trajectory:
     Raises DecodeError when the data are no trajectory.
     """
     data = little_endian(data, TRAJECTORY)
-    stamp, frame_id, count, first_time, start = _layout(data)
+    stamp, frame_id, count, first_time, start = _read_head(data)
     points: Points = np.empty(0, POINT_HEAD)
     if count:
         points = np.ndarray((count,), POINT_HEAD, data, start, (_POINT_SIZE,))
@@ -108,18 +109,45 @@ def encode_trajectory(
     return head + padding + body[:-TIME_SIZE]
 
 
-def _layout(data: bytes) -> _Layout:
-    stamp = decode_stamp(data, TRAJECTORY)
-    count_at = wire.aligned(_FRAME.read(data), 4)
-    (frame_id,) = _FRAME.texts
-    try:
-        (count,) = _U32.unpack_from(data, count_at)
-        if count == 0:
-            wire.check_end(data, count_at + 4, TRAJECTORY)
-            return stamp, frame_id, 0, Time(), 0
-        first_time = tuple.__new__(Time, _TIME.unpack_from(data, count_at + 4))
-    except error:
-        raise wire.truncated(TRAJECTORY, count_at + 12, len(data)) from None
-    start = wire.aligned(count_at + 12, 8)
-    wire.check_end(data, start + count * _POINT_SIZE - TIME_SIZE, TRAJECTORY)
-    return stamp, frame_id, count, first_time, start
+class _Head:
+    """What stands before the points; that of a frame like the one before is read in one stroke."""
+
+    def __init__(self) -> None:
+        self._frame = LeadingStrings(TRAJECTORY, 1)
+        self._known: bytes | None = None
+        self._frame_id = ""
+        self._end = self._start = 0
+        self._whole = _TIME
+
+    def read(self, data: bytes) -> _Layout:
+        """Return the layout of little-endian data. Raises DecodeError."""
+        if data[_FRAME_AT : self._end] == self._known and len(data) > self._start:
+            sec, nanosec, count, first_sec, first_nanosec = self._whole.unpack_from(data)
+            if count:
+                wire.check_end(data, self._start + count * _POINT_SIZE - TIME_SIZE, TRAJECTORY)
+                first = _new(Time, (first_sec, first_nanosec))
+                return _new(Time, (sec, nanosec)), self._frame_id, count, first, self._start
+        return self._read_anew(data)
+
+    def _read_anew(self, data: bytes) -> _Layout:
+        stamp = decode_stamp(data, TRAJECTORY)
+        end = self._frame.read(data)
+        (frame_id,) = self._frame.texts
+        count_at = wire.aligned(end, 4)
+        try:
+            (count,) = _U32.unpack_from(data, count_at)
+            if count == 0:
+                wire.check_end(data, count_at + 4, TRAJECTORY)
+                return stamp, frame_id, 0, Time(), 0
+            first_time = Time(*_TIME.unpack_from(data, count_at + 4))
+        except error:
+            raise wire.truncated(TRAJECTORY, count_at + 12, len(data)) from None
+        start = wire.aligned(count_at + 12, 8)
+        wire.check_end(data, start + count * _POINT_SIZE - TIME_SIZE, TRAJECTORY)
+        self._known, self._frame_id = bytes(data[_FRAME_AT:end]), frame_id
+        self._end, self._start = end, start
+        self._whole = Struct(f"<{wire.HEADER_SIZE}xiI{count_at - _FRAME_AT}xIiI")
+        return stamp, frame_id, count, first_time, start
+
+
+_read_head = _Head().read

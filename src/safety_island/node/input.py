@@ -140,7 +140,7 @@ class Input:
         stamps = self.stamps
         try:
             message = self._decode(data)
-            if not self.writers.takes(guid):
+            if guid != self.writers.owner and not self.writers.takes(guid):
                 self._other = sample
                 return self._refuse(SampleReason.OTHER_PUBLISHER)
             reason = stamps.judge(message.stamp, data, now, guid != self.source_guid)

@@ -61,14 +61,17 @@ class MemoryPublisher:
         clock: Clock,
         readers: list[MemorySubscription],
         guid: bytes,
+        is_latched: bool,
         on_close: Callable[[MemoryPublisher], None],
     ) -> None:
         self.guid = guid
         self.failed = 0
         self.last_error = ""
         self.last: MemorySample | None = None
+        """For those who subscribe later, where the topic is transient-local."""
         self._clock = clock
         self._readers = readers
+        self._is_latched = is_latched
         self._on_close = on_close
 
     def close(self) -> None:
@@ -77,10 +80,13 @@ class MemoryPublisher:
 
     def write(self, data: bytes) -> bool:
         """Send one message; its time stamp is the virtual wall clock. Always possible."""
+        if not self._readers and not self._is_latched:
+            return True
         sample = tuple.__new__(MemorySample, (data, self._clock.wall_ns(), self.guid))
-        self.last = sample
         for reader in self._readers:
             reader.put(sample)
+        if self._is_latched:
+            self.last = sample
         return True
 
     def withdraw(self) -> None:
@@ -116,10 +122,12 @@ class MemoryDomain:
         found = self._topic(topic, type_name)
         self._writers += 1
         guid = self._writers.to_bytes(16, "big")
-        writer = MemoryPublisher(self._clock, found.readers, guid, partial(self._forget, found))
+        is_latched = qos.durability == "transient_local"
+        forget = partial(self._forget, found)
+        writer = MemoryPublisher(self._clock, found.readers, guid, is_latched, forget)
         found.writers |= {guid}
         self._changes += 1
-        if qos.durability == "transient_local":
+        if is_latched:
             found.latched.append(writer)
         return writer
 

@@ -35,7 +35,7 @@ def execute(arguments: argparse.Namespace) -> int:
         return 0
     print(f"{times.real_time_factor:.0f} times real time at {times.period_s * 1e3:g} ms")
     print(
-        f"one tick of the whole node {times.tick_us:.0f} us at the median, {times.p99_us:.0f} us"
-        f" p99, {times.max_us:.0f} us at most; {times.ticks} ticks"
+        f"one tick of the whole node {times.tick_us:.0f} us at the median of the best round,"
+        f" {times.p99_us:.0f} us p99, {times.max_us:.0f} us at most; {times.ticks} ticks"
     )
     return 0
