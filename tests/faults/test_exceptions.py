@@ -24,11 +24,11 @@ PLACES: dict[str, Callable[[Scene], tuple[Any, str]]] = {
     "follower.run_lateral": lambda scene: (scene.follower, "run_lateral"),
     "follower.run_longitudinal": lambda scene: (scene.follower, "run_longitudinal"),
     "follower.sync": lambda scene: (scene.follower, "sync"),
-    "check": lambda scene: (scene.node, "_check"),
+    "check": lambda scene: (scene.node._path, "check"),
     "life_cycle.judge": lambda scene: (scene.node.life_cycle, "judge"),
     "life_cycle.overrun": lambda scene: (scene.node.life_cycle.overrun, "tick"),
-    "processing time": lambda scene: (scene.node._lateral_time, "send"),
-    "send": lambda scene: (scene.node, "_send"),
+    "processing time": lambda scene: (scene.node._times, "send"),
+    "send": lambda scene: (scene.node._path, "send"),
 }
 
 

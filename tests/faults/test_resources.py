@@ -119,6 +119,6 @@ def test_row_50_without_any_output_it_is_silent(
 
 def test_row_50_a_debug_topic_is_not_needed(monkeypatch: pytest.MonkeyPatch) -> None:
     scene = Scene().drive()
-    for writer in (scene.node._lateral_time, scene.node._longitudinal_time):
+    for writer in scene.node._times.writers:
         monkeypatch.setattr(writer._publisher, "write", fail_with(OSError(24, "no more")))
     stays_active(scene, 2.0)

@@ -6,24 +6,21 @@ from collections.abc import Callable, Sequence
 
 from safety_island.can.mode import OutputMode
 from safety_island.dds import topics
+from safety_island.dds.topics import TopicEntry
 from safety_island.guard import Guard
 from safety_island.life_cycle.facts import Facts
 from safety_island.life_cycle.life_cycle import LifeCycle
-from safety_island.life_cycle.ramp import Motion
 from safety_island.life_cycle.reason import Reason
-from safety_island.life_cycle.state import State
-from safety_island.life_cycle.transition import Life
-from safety_island.messages.wire import NANOSECONDS
 from safety_island.node.arming import Arming
-from safety_island.node.command import Computed, substitute
-from safety_island.node.command_check import Checked, CommandCheck
-from safety_island.node.controllers import NO_COMMAND, Controllers, Ran
-from safety_island.node.explain import explain
+from safety_island.node.command_check import CommandCheck
+from safety_island.node.command_path import CommandPath
+from safety_island.node.controllers import NO_COMMAND, Controllers
+from safety_island.node.explain import tell_state
 from safety_island.node.follower import Follower
 from safety_island.node.identity import Identity
 from safety_island.node.input_set import NO_SUBJECT, NOT_BLOCKED, Blocked, InputSet
 from safety_island.node.node import Node
-from safety_island.node.outputs import ControlTopic, Output, ProcessingTime
+from safety_island.node.outputs import ControlTopic, Output, ProcessingTimes, TopicWriter
 from safety_island.node.report import Outcome, TickReport, describe
 from safety_island.node.sender import CommandSender
 from safety_island.node.status import StatusTopic
@@ -36,14 +33,6 @@ ON_TIME = Tick(0, 0, 0)
 MEMORY_EVERY = 64
 """Ticks between two looks at the memory in use."""
 _NO_TIMES = (0, 0)
-_PUBLISHED = Outcome.PUBLISHED
-_SENDS = (State.READY, State.ACTIVE)
-_ALARMING = (State.HOLD, State.STOP, State.SILENT)
-_OUTCOMES = {
-    Reason.WAITING_FOR_INPUT: Outcome.WAITING_FOR_INPUT,
-    Reason.NO_TRAJECTORY: Outcome.NOT_READY,
-}
-"""What a tick without a command is called; FORBIDDEN for every other reason."""
 
 
 class ControllerNode(Node):
@@ -85,14 +74,13 @@ class ControllerNode(Node):
         self.arming = Arming(self.subscription(topics.ARM), self.logger)
         self.sender = CommandSender(self.clock, self.logger)
         self.sender.outputs = (self.control_topic(),) if outputs is None else tuple(outputs)
+        self._path = CommandPath(self.check, self.life_cycle, self.sender, self.inputs, self.logger)
         self.report: TickReport | None = None
         """The last tick."""
         self.observers: list[Callable[[TickReport], None]] = []
         """Told of each tick of ``run`` after its end; they take their time from the same thread."""
-        self._lateral_time, self._longitudinal_time = (
-            ProcessingTime(topic, self.publisher(topic), self.logger)
-            for topic in (topics.LATERAL_TIME, topics.LONGITUDINAL_TIME)
-        )
+        time_topics = (topics.LATERAL_TIME, topics.LONGITUDINAL_TIME)
+        self._times = ProcessingTimes([self._writer(topic) for topic in time_topics])
         self.status = StatusTopic(self, self.publisher(topics.STATUS))
         self._ticks = 0
         self._last_tick: float | None = None
@@ -104,6 +92,9 @@ class ControllerNode(Node):
         topic = ControlTopic(topics.CONTROL, publisher, self.logger)
         self.sender.topics.append(topic)
         return topic
+
+    def _writer(self, topic: TopicEntry) -> TopicWriter:
+        return TopicWriter(topic, self.publisher(topic), self.logger)
 
     def on_tick(self, due: Tick) -> None:
         """Do one tick of ``run``."""
@@ -132,7 +123,6 @@ class ControllerNode(Node):
             outcome, detail = Outcome.FAULT, describe(error)
             self.logger.error("the tick failed: %s", detail, throttled=True)
             self._fail(now)
-            self.inputs.measure(now)
         self.inputs.warn(now)
         if self.sender.command is None:
             self.sender.withdraw()
@@ -191,7 +181,8 @@ class ControllerNode(Node):
         if not blocked.reason and ran is NO_COMMAND:
             self.logger.info("Waiting for a trajectory that can be followed", throttled=True)
             blocked = Blocked(Reason.NO_TRAJECTORY)
-        checked = self._check(ran, now, start_ns, not disengaged)
+        since_start_s = (self.clock.monotonic_ns() - start_ns) / 1e9
+        checked = self._path.check(ran, now + since_start_s, not disengaged)
         asked = self.arming.take()
         facts = Facts(
             blocked.reason,
@@ -205,81 +196,17 @@ class ControllerNode(Node):
         before = self.life_cycle.state
         life = self.life_cycle.judge(facts, now)
         if life.state is not before:
-            self._tell(life, blocked.subject)
+            tell_state(self.logger, life, blocked.subject)
         if asked:
             self.arming.answer(before, life.state)
         if ran.command is not None:
-            self._tell_times()
-        return self._send(checked, now)
-
-    def _check(self, ran: Ran, now: float, start_ns: int, engaged: bool) -> Checked:
-        """Ask the guard about the command of the controllers."""
-        if ran.command is None:
-            return Checked(None, outcome=Outcome.FAULT, detail=ran.fault)
-        now += (self.clock.monotonic_ns() - start_ns) / 1e9
-        return self.check.check(
-            ran.command, now, self.inputs.speed(), self.inputs.steering(), engaged
-        )
-
-    def _send(self, checked: Checked, now: float) -> tuple[Outcome, str]:
-        """Send what the state lets out."""
-        life = self.life_cycle.life
-        if life.state in _SENDS and checked.command is not None:
-            sent = self._publish(checked.command, _PUBLISHED)
-            motion = tuple.__new__(Motion, checked.command[2:6])
-            self.life_cycle.sent(motion, sent[0] is _PUBLISHED, now)
-            return sent
-        if (substituted := self.life_cycle.motion()) is not None:
-            if checked.command is not None:
-                self.check.forget()  # what was not sent is nothing to measure a change against
-            return self._substitute(substituted, now)
-        self.check.forget()
-        if life.state in _SENDS:
-            return checked.outcome, checked.detail
-        return _OUTCOMES.get(life.reason, Outcome.FORBIDDEN), self._detail(life.reason)
-
-    def _substitute(self, motion: Motion, now: float) -> tuple[Outcome, str]:
-        """Send a command of the life cycle; the guard judges it like any other."""
-        speed, steering = self.inputs.speed(), self.inputs.steering()
-        checked = self.check.check(substitute(motion, now), now, speed, steering, False)
-        if checked.command is None:
-            return checked.outcome, checked.detail
-        return self._publish(checked.command, Outcome.SUBSTITUTED)
+            self._times.send(self.clock.wall_ns(), self.controllers.spent_ns)
+        return self._path.send(checked, now)
 
     def _fail(self, now: float) -> None:
-        """End a tick that an exception has ended; a stop goes on, whatever fails in it."""
+        """End a tick that an exception has ended."""
         before, life = self.life_cycle.state, self.life_cycle.fault()
         if life.state is not before:
-            self._tell(life, NO_SUBJECT)
-        if self.sender.command is not None or (motion := self.life_cycle.motion()) is None:
-            return
-        self.check.forget()  # who knows what it has seen in this tick
-        try:
-            self._substitute(motion, now)
-        except MemoryError:
-            raise
-        except Exception as error:
-            self.logger.error("the stop failed: %s", describe(error), throttled=True)
-
-    def _publish(self, result: Computed, sent: Outcome) -> tuple[Outcome, str]:
-        """Send a command, and say how that ended."""
-        if self.sender.send(result):
-            return sent, ""
-        return Outcome.OUTPUT_FAILED, ", ".join(output.name for output in self.sender.outputs)
-
-    def _tell_times(self) -> None:
-        stamp = divmod(self.clock.wall_ns(), NANOSECONDS)
-        lateral_ns, longitudinal_ns = self.controllers.spent_ns
-        self._lateral_time.send(stamp, lateral_ns)
-        self._longitudinal_time.send(stamp, longitudinal_ns)
-
-    def _detail(self, reason: Reason) -> str:
-        if reason is Reason.WAITING_FOR_INPUT:
-            return ", ".join(self.inputs.missing())
-        return reason.name.lower().replace("_", " ")
-
-    def _tell(self, life: Life, subject: int) -> None:
-        """Log a change of state; one that comes and goes is told now and then."""
-        state, meaning = life.state.name, explain(life.reason, subject)
-        log = self.logger.warning if life.state in _ALARMING else self.logger.info
-        log("state %s: %s", state, meaning, throttled=True, site=f"{state} {life.reason.name}")
+            tell_state(self.logger, life, NO_SUBJECT)
+        self._path.carry_on(now)
+        self.inputs.measure(now)

@@ -8,13 +8,12 @@ from typing import NamedTuple
 
 from safety_island.control.status import Mode
 from safety_island.gate.params import GateParams
-from safety_island.gate.warning import EXPLANATIONS, InputWarning
-from safety_island.gate.warnings import warnings
 from safety_island.gate.writers import WINDOW_S
 from safety_island.life_cycle.reason import Reason
 from safety_island.messages.inputs import Odometry, OperationMode, Steering
 from safety_island.node.follower import InputFollower
 from safety_island.node.input import Input
+from safety_island.node.input_warnings import InputWarnings
 from safety_island.node.inputs import INPUTS
 from safety_island.node.transport import Transport
 from safety_island.platform.interfaces import Logger
@@ -25,11 +24,7 @@ OPERATION_MODE = 4
 """Places in the table of inputs."""
 
 _NONE, _AUTONOMOUS = Reason.NONE, int(Mode.AUTONOMOUS)
-_PLACES = range(len(INPUTS))
-_SIGNS = attrgetter("rate.too_low", "stamps.delay_s", "writers.others")
-"""Of an input: what is not zero when rate, delay or publishers may be worth a warning."""
 _ACCEPTED_AT = attrgetter("accepted_at")
-_CLOCK_STEP, _CLOCK_GAP = attrgetter("stamps.step_told_until"), attrgetter("clock_gap_s")
 
 NO_SUBJECT = 255
 """Stands for: the reason is about no input."""
@@ -67,13 +62,9 @@ class InputSet:
         self._transport = transport
         self._logger = logger
         self._keeps_first = params.second_publisher == "keep_first"
-        self._age_warnings = [item.age_warning_s for item in self.items]
-        # the operation mode was stamped when it changed
-        self._clock_warnings = [params.clock_warning] * OPERATION_MODE + [math.inf]
+        self._watch = InputWarnings(self.items, params, logger)
         self.ages_s = [math.inf] * len(self.items)
         """Age of each, as of the last ``measure``."""
-        self.warnings = [0] * len(self.items)
-        """Bits of InputWarning for each input, as of the last tick."""
         self.are_complete = False
         """Whether a sample of every input was accepted."""
         self._unsettled_until = -math.inf
@@ -151,38 +142,12 @@ class InputSet:
 
     def warn(self, now: float) -> None:
         """Look which warnings stand, and log those that are new."""
-        found = self.warnings if self._is_calm(now) else [self._warnings(i, now) for i in _PLACES]
-        if found != self.warnings:
-            self._tell(found)
+        self._watch.update(now, self.ages_s, now > self._unsettled_until)
 
-    def _is_calm(self, now: float) -> bool:
-        """Whether nothing stands and nothing may: the usual case, told without a look at each."""
-        items = self.items
-        return not (
-            now <= self._unsettled_until
-            or any(self.warnings)
-            or any(map(any, map(_SIGNS, items)))
-            or max(map(_CLOCK_STEP, items)) >= now
-            or any(map(gt, self.ages_s, self._age_warnings))
-            or any(map(gt, map(_CLOCK_GAP, items), self._clock_warnings))
-        )
-
-    def _warnings(self, index: int, now: float) -> int:
-        item = self.items[index]
-        if item.message is None:
-            return 0
-        is_old = self.ages_s[index] > self._age_warnings[index]
-        is_off = item.clock_gap_s > self._clock_warnings[index]
-        return warnings(now, item.stamps, item.writers, item.rate, is_old, is_off)
-
-    def _tell(self, found: list[int]) -> None:
-        self.warnings = found
-        for item, new in zip(self.items, found, strict=True):
-            old, item.warnings = item.warnings, new
-            for bit in InputWarning(new & ~old):
-                what = EXPLANATIONS[bit][0]
-                site = f"{item.topic} {bit.name}"
-                self._logger.warning("%s: %s", item.name, what, throttled=True, site=site)
+    @property
+    def warnings(self) -> list[int]:
+        """Bits of InputWarning for each input, as of the last tick."""
+        return self._watch.bits
 
     @property
     def operation_mode(self) -> OperationMode | None:

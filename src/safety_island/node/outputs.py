@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Protocol
 
 from safety_island.dds.topics import TopicEntry
 from safety_island.messages.outputs import Control, encode_control, encode_float64_stamped
+from safety_island.messages.wire import NANOSECONDS
 from safety_island.node.transport import Publisher
 from safety_island.platform.interfaces import Logger
 
@@ -73,9 +75,14 @@ class ControlTopic(TopicWriter):
             self._publisher.withdraw()
 
 
-class ProcessingTime(TopicWriter):
-    """Publishes how long a controller took, as ``Float64Stamped`` in milliseconds."""
+class ProcessingTimes:
+    """Publishes how long each controller took, as ``Float64Stamped`` in milliseconds."""
 
-    def send(self, stamp: tuple[int, int], spent_ns: int) -> None:
-        """Publish a duration [ns]; a failure is no reason to stop."""
-        self.write(encode_float64_stamped(stamp, spent_ns / 1e6))
+    def __init__(self, writers: Sequence[TopicWriter]) -> None:
+        self.writers = writers
+
+    def send(self, wall_ns: int, spent_ns: Sequence[int]) -> None:
+        """Publish durations [ns], one for each topic; a failure is no reason to stop."""
+        stamp = divmod(wall_ns, NANOSECONDS)
+        for writer, spent in zip(self.writers, spent_ns, strict=True):
+            writer.write(encode_float64_stamped(stamp, spent / 1e6))
