@@ -32,7 +32,6 @@ NAME = "safety_island"
 ON_TIME = Tick(0, 0, 0)
 MEMORY_EVERY = 64
 """Ticks between two looks at the memory in use."""
-_NO_TIMES = (0, 0)
 
 
 class ControllerNode(Node):
@@ -111,7 +110,8 @@ class ControllerNode(Node):
         start_ns = self.clock.monotonic_ns()
         if now is None:
             now = start_ns / 1e9
-        self.sender.command, self.controllers.spent_ns = None, _NO_TIMES
+        self.sender.command = None
+        self.controllers.begin()
         refused, blocked = 0, NOT_BLOCKED
         try:
             refused = self._take(now, due.skipped)

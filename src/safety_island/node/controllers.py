@@ -28,16 +28,23 @@ _NO_REFERENCE, _SOLVED = MpcStatus.NO_REFERENCE, MpcStatus.SOLVED
 
 
 class Controllers:
-    """Lateral, then longitudinal, then the hand-over; ``spent_ns`` is what each took [ns]."""
+    """Lateral, then longitudinal, then the hand-over.
+
+    ``have_run`` tells whether both came to their end in this tick, ``spent_ns`` what each took [ns].
+    """
 
     def __init__(self, follower: Follower, clock: Clock, logger: Logger) -> None:
-        self.spent_ns = (0, 0)
+        self.begin()
         self._follower = follower
         self._clock = clock
         self._logger = logger
         self._stamp = follower.command["stamp"]
         """Of the lateral part: the kernels leave it to their caller."""
         self._command = reader(follower.command, *Computed._fields)
+
+    def begin(self) -> None:
+        """Begin a tick: neither has run."""
+        self.have_run, self.spent_ns = False, (0, 0)
 
     def run(self, now: float) -> Ran:
         """Run both at ``now`` [s, monotonic]; an exception but MemoryError is a value."""
@@ -63,6 +70,7 @@ class Controllers:
         if follower.run_longitudinal(now) < 0:
             return NO_COMMAND
         self.spent_ns = (middle_ns - begin_ns, monotonic_ns() - middle_ns)
+        self.have_run = True
         follower.sync()
         command = tuple.__new__(Computed, self._command())
         if status is _SOLVED:

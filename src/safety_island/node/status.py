@@ -71,7 +71,7 @@ class StatusTopic(TopicWriter):
         self._stamp.sec[0], self._stamp.nanosec[0] = sec, nanosec
         for item, age_s in zip(self._inputs, report.ages_s, strict=True):
             item.fill(age_s)
-        if report.lateral_time_s:
+        if self._node.controllers.have_run:
             self._trace.read()
         else:
             self._trace.clear()
