@@ -89,7 +89,8 @@ def test_values_of_a_tick() -> None:
 
 
 def test_ages_count_from_the_sending() -> None:
-    inputs: Any = [SimpleNamespace(name="a", sent_ns=10**9), SimpleNamespace(name="b", sent_ns=0)]
+    sample = SimpleNamespace(source_timestamp_ns=10**9)
+    inputs: Any = [SimpleNamespace(name="a", taken=sample), SimpleNamespace(name="b", taken=None)]
     assert sample_ages(inputs, 3 * 10**9) == {"a": 2.0, "b": math.inf}
 
 
