@@ -15,7 +15,8 @@ from safety_island.guard import Verdict
 from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State
 from safety_island.messages.status import NO_VALUE, decode_status
-from safety_island.messages.status_fields import Status
+from safety_island.messages.status_fields import InputStatus, Status
+from safety_island.node.input_status import FIELDS
 from safety_island.node.inputs import INPUTS
 from safety_island.platform import Tick
 from tests.node.rig import ROWS, FakeFollower, Rig
@@ -125,3 +126,7 @@ def test_before_anything_came_nothing_is_made_up(rig: Rig, heard: Any) -> None:
     for item in status.inputs:
         assert (item.accepted, item.last_refusal, item.writer_guid) == (0, NO_VALUE, bytes(16))
         assert item.age == math.inf
+
+
+def test_the_inputs_are_told_in_the_order_of_the_message() -> None:
+    assert tuple(FIELDS) == InputStatus._fields

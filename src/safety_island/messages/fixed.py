@@ -65,6 +65,18 @@ def packer(memory: memoryview[Any], kind: Any, *names: str) -> Callable[..., Non
     return partial(layout.pack_into, memory, columns[0][1])
 
 
+def rows_packer(memory: memoryview[Any], kind: Any, name: str) -> Callable[..., None]:
+    """Return a function that writes a whole array of messages: the fields of each, in their order.
+
+    An array within such a message is given as its bytes.
+    """
+    column, at = kind.fields[name]
+    element, (count,) = column.subdtype
+    parts = [element.fields[field][0] for field in element.names]
+    letters = [letter(part) if part.subdtype is None else f"{part.itemsize}s" for part in parts]
+    return partial(Struct("<" + "".join(letters) * count).pack_into, memory, at)
+
+
 def reader(record: npt.NDArray[Any], *names: str) -> Callable[[], tuple[Any, ...]]:
     """Return a function that reads scalar fields of a record of shape (1,), in this order, at once.
 

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from safety_island.messages import wire
 from safety_island.messages.description import Primitive
-from safety_island.messages.fixed import cells, packer, record_type
+from safety_island.messages.fixed import cells, packer, record_type, rows_packer
 from safety_island.messages.framed import little_endian
 from safety_island.messages.registry import struct_of
 from safety_island.messages.status_fields import InputStatus, Status
@@ -27,7 +27,6 @@ STATUS_RECORD = record_type(STATUS)
 INPUT_RECORD = record_type(INPUT_STATUS)
 SIZE = HEADER_SIZE + STATUS_RECORD.itemsize
 """Of a status on the wire [byte]."""
-NO_WRITER = bytes(16)
 _ALIGNMENT = 8
 _UNKNOWN = ("lateral_error", "yaw_error", "residual", "stop_dist", "target_vel")
 _COMMAND = ("command_angle", "command_rate", "command_velocity", "command_acceleration")
@@ -40,8 +39,8 @@ class StatusWriter:
     ``fields`` has a view of each field, under the names of the IDL file: ``fields.tick[0] = 7``,
     ``fields.stamp.sec[0] = 1``. ``inputs`` has those of each input, in the order of the message:
     ``inputs[1].age[0] = 0.1``, ``inputs[1].refused[reason] += 1``. A value stays until it is
-    written again, so that counts live here. ``pack`` and ``pack_input`` give functions that write
-    several fields at once. ``record`` is all of it, shape (1,).
+    written again, so that counts live here. ``pack`` and ``pack_inputs`` give functions that
+    write many fields at once. ``record`` is all of it, shape (1,).
     """
 
     def __init__(self) -> None:
@@ -52,7 +51,6 @@ class StatusWriter:
         self.inputs: tuple[Any, ...] = self.fields.inputs
         self._message = memory[_ALIGNMENT - HEADER_SIZE :]
         self._message[:HEADER_SIZE] = tuple(HEADER_LE)
-        self._command = [getattr(self.fields, name) for name in _COMMAND]
         self._clear()
 
     def pack(self, *names: str) -> Callable[..., None]:
@@ -62,20 +60,12 @@ class StatusWriter:
         """
         return packer(self._memory, STATUS_RECORD, *names)
 
-    def pack_input(self, place: int, *names: str) -> Callable[..., None]:
-        """Return a function that writes these fields of one input at once, as ``pack`` does."""
-        size = INPUT_RECORD.itemsize
-        start = STATUS_RECORD.fields["inputs"][1] + place * size
-        return packer(self._memory[start : start + size], INPUT_RECORD, *names)
+    def pack_inputs(self) -> Callable[..., None]:
+        """Return a function that writes all fields of all inputs at once.
 
-    def set_writer(self, place: int, guid: bytes) -> None:
-        """Note the publisher of an input: 16 bytes, or none when it is not known."""
-        self.inputs[place].writer_guid[:] = guid or NO_WRITER
-
-    def clear_command(self) -> None:
-        """Note that no command went out."""
-        for cell in self._command:
-            cell[0] = math.nan
+        Their order is that of the message; ``refused`` and ``writer_guid`` are given as bytes.
+        """
+        return rows_packer(self._memory, STATUS_RECORD, "inputs")
 
     def encode(self) -> bytes:
         """Return the message, header included."""
@@ -83,8 +73,7 @@ class StatusWriter:
 
     def _clear(self) -> None:
         """Say of everything that has no value yet that it has none."""
-        self.clear_command()
-        for name in _UNKNOWN:
+        for name in (*_UNKNOWN, *_COMMAND):
             getattr(self.fields, name)[0] = math.nan
         for name in _NO_CHOICE:
             getattr(self.fields, name)[0] = NO_VALUE

@@ -30,7 +30,8 @@ _NO_REFERENCE, _SOLVED = MpcStatus.NO_REFERENCE, MpcStatus.SOLVED
 class Controllers:
     """Lateral, then longitudinal, then the hand-over.
 
-    ``have_run`` tells whether both came to their end in this tick, ``spent_ns`` what each took [ns].
+    ``have_run`` tells whether both came to their end in this tick, ``spent_ns`` what each took
+    [ns].
     """
 
     def __init__(self, follower: Follower, clock: Clock, logger: Logger) -> None:

@@ -11,6 +11,7 @@ import math
 from collections import Counter
 from collections.abc import Sequence
 from functools import partial
+from struct import Struct
 from typing import Any
 
 from safety_island.gate.content import ContentGate
@@ -21,12 +22,14 @@ from safety_island.gate.reason import SampleReason
 from safety_island.gate.stamps import StampGate
 from safety_island.gate.writers import Writers
 from safety_island.messages.errors import DecodeError
-from safety_island.messages.status import NO_VALUE
+from safety_island.messages.status import INPUT_RECORD, NO_VALUE
 from safety_island.node.follower import InputFollower
 from safety_island.node.inputs import InputSpec
 from safety_island.node.report import describe
 from safety_island.node.transport import Sample, Subscription
 from safety_island.platform.interfaces import Logger
+
+_COUNT = Struct("<I")
 
 
 class Input:
@@ -61,11 +64,15 @@ class Input:
         """Samples that arrived after a newer one."""
         self.refused: Counter[SampleReason] = Counter()
         """Samples refused, by reason."""
-        self.refused_count = self.refused_in_a_row = 0
+        self.refusals = bytearray(INPUT_RECORD["refused"].itemsize)
+        """The same, as the status has it."""
+        self.refused_in_a_row = 0
         self.last_refusal: int = NO_VALUE
         """The SampleReason of the last one, NO_VALUE when none was refused."""
         self.accepted_at = -math.inf
         """Monotonic time [s] before which the sample in force was not received."""
+        self.age_s = math.inf
+        """Time since then, as of this tick."""
         self.clock_gap_s = 0.0
         """Between its stamp and the wall clock, beyond the time that it may have waited here."""
         self.taken: Sample | None = None
@@ -165,7 +172,7 @@ class Input:
     def _refuse(self, reason: SampleReason, detail: str = "") -> bool:
         detail = detail or reason.name.lower().replace("_", " ")
         self.refused[reason] += 1
-        self.refused_count += 1
+        _COUNT.pack_into(self.refusals, _COUNT.size * reason, self.refused[reason])
         self.refused_in_a_row += 1
         self.last_refusal = reason
         site = f"{self.topic} {reason.name}"

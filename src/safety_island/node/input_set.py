@@ -24,7 +24,7 @@ OPERATION_MODE = 4
 """Places in the table of inputs."""
 
 _NONE, _AUTONOMOUS = Reason.NONE, int(Mode.AUTONOMOUS)
-_ACCEPTED_AT = attrgetter("accepted_at")
+_AGE_S = attrgetter("age_s")
 
 NO_SUBJECT = 255
 """Stands for: the reason is about no input."""
@@ -91,7 +91,9 @@ class InputSet:
 
     def measure(self, now: float) -> None:
         """Take the age of each."""
-        self.ages_s = list(map(now.__sub__, map(_ACCEPTED_AT, self.items)))
+        for item in self.items:
+            item.age_s = now - item.accepted_at
+        self.ages_s = list(map(_AGE_S, self.items))
 
     def drop(self) -> None:
         """Drop what has waited while the process stood still; the operation mode stays."""

@@ -52,9 +52,7 @@ class StatusTopic(TopicWriter):
         self._writer = writer = StatusWriter()
         self._stamp = writer.fields.stamp
         self._pack = writer.pack(*_SCALARS)
-        self._inputs = [
-            InputStatus(item, writer, place) for place, item in enumerate(node.inputs.items)
-        ]
+        self._inputs = InputStatus(node.inputs.items, writer)
         self._trace = TraceStatus(node.follower.trace)
         self._commands = self._missed = 0
 
@@ -69,8 +67,7 @@ class StatusTopic(TopicWriter):
     def _fill(self, report: TickReport) -> None:
         sec, nanosec = divmod(self._node.clock.wall_ns(), NANOSECONDS)
         self._stamp.sec[0], self._stamp.nanosec[0] = sec, nanosec
-        for item, age_s in zip(self._inputs, report.ages_s, strict=True):
-            item.fill(age_s)
+        self._inputs.fill()
         if self._node.controllers.have_run:
             self._trace.read()
         else:

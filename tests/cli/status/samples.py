@@ -74,7 +74,7 @@ def writer_of(inputs: dict[int, dict[str, Any]] | None = None, **changes: Any) -
     for place, item in enumerate(writer.inputs):
         item.age[0], item.age_limit[0], item.transport_delay[0] = AGES[place], LIMITS[place], 0.0012
         item.accepted[0] = item.received[0] = 500 + place
-        writer.set_writer(place, bytes([place] * 16))
+        item.writer_guid[:] = bytes([place] * 16)
         for name, value in (inputs or {}).get(place, {}).items():
             getattr(item, name)[0] = value
             if name == "last_refusal" and value < len(item.refused):
