@@ -51,6 +51,13 @@ def test_what_is_no_time(bad: Time) -> None:
     assert StampGate(0.5).judge(bad, b"", 0.0) is SampleReason.BAD_STAMP
 
 
+@pytest.mark.parametrize("nanosec", [10**9, 10**9 + 1])
+def test_what_is_no_time_though_it_would_fit(gate: StampGate, nanosec: int) -> None:
+    """The sender's clock had a second more; the stamp is as far as the time."""
+    assert gate.judge(Time(100, nanosec), b"", 1001.0) is SampleReason.BAD_STAMP
+    assert gate.judge(Time(101, 0), b"", 1001.0) is None
+
+
 @pytest.mark.parametrize("good", [Time(0, 1), Time(1, 0), Time(1, 10**9 - 1), Time(2**31 - 1, 0)])
 def test_the_ends_of_what_is_a_time(good: Time) -> None:
     gate = StampGate(0.5)
@@ -90,6 +97,15 @@ class TestDelay:
         offer(gate, 100.0, 1000.0)
         assert offer(gate, 100.125, 1000.5) is None
         assert gate.delay_s == 0.5 * (1.0 - FORGET_RATE) - 0.125
+
+    def test_the_smallest_step_of_a_stamp(self, gate: StampGate) -> None:
+        assert gate.judge(Time(100, 1), b"", 1000.25) is None
+        gate.hold(b"", 1000.25)
+        assert gate.delay_s == pytest.approx(0.25 - 0.00025)
+
+    def test_after_the_longest_pause(self, gate: StampGate) -> None:
+        assert offer(gate, 109.75, 1010.0) is None
+        assert gate.delay_s == pytest.approx(0.25 - 0.01)
 
     def test_delay_adds_up_over_samples(self, gate: StampGate) -> None:
         found = [offer(gate, 100.0 + 0.0625 * i, 1000.0 + 0.125 * i) for i in range(1, 10)]
@@ -189,9 +205,17 @@ class TestSuccessor:
         offer(gate, 100.125, 1000.375)
         assert gate.delay_s > 0.2
         assert self.offer(gate, 100.25, 1000.625) is None
-        assert gate.delay_s == 0.0
+        assert (gate.delay_s, gate.step_told_until) == (0.0, -math.inf)
         assert offer(gate, 100.375, 1001.0) is None
         assert gate.delay_s == pytest.approx(0.25 - 0.000375)
+
+    @pytest.mark.parametrize(("stamp_s", "now"), [(100.125, 1000.5), (100.5, 1000.125)])
+    def test_the_limit_itself_is_neither_late_nor_a_step(self, stamp_s: float, now: float) -> None:
+        since_s, step_s = now - 1000.0, stamp_s - 100.0
+        gate = StampGate(abs(since_s * (1.0 - FORGET_RATE) - step_s))
+        offer(gate, 100.0, 1000.0)
+        assert self.offer(gate, stamp_s, now) is None
+        assert (gate.delay_s, gate.step_told_until) == (0.0, -math.inf)
 
     def test_a_clock_behind_is_taken_when_its_stamps_go_on(self, gate: StampGate) -> None:
         found = [self.offer(gate, 101.0 + 0.125 * i, 1005.0 + 0.125 * i) for i in range(3)]

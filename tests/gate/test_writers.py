@@ -5,7 +5,7 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from safety_island.gate.writers import UNKNOWN, WINDOW_S, Writers
+from safety_island.gate.writers import MOST_OTHERS, UNKNOWN, WINDOW_S, Writers
 
 A, B, C = b"a" * 16, b"b" * 16, b"c" * 16
 NOBODY: frozenset[bytes] = frozenset()
@@ -36,6 +36,11 @@ class TestOwner:
         assert writers.takes(A)
         writers.update(frozenset({A, B, C}), 1.0)
         assert writers.owner == A and writers.others == 2
+
+    def test_more_are_not_counted_than_the_status_can_say(self) -> None:
+        assert MOST_OTHERS == 255
+        for count, others in ((255, 254), (256, 255), (257, 255)):
+            assert known(*(n.to_bytes(16, "big") for n in range(count))).others == others
 
     def test_nobody(self) -> None:
         writers = known()
