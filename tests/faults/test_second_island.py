@@ -66,6 +66,6 @@ def test_row_71_the_first_goes_silent_where_that_is_the_policy() -> None:
     newcomer = scene.new_node()
     first = silent_within(scene, scene.now, SLOW)
     assert first.reason is Reason.SECOND_PUBLISHER
-    newcomer.outputs[0]._publisher.close()  # type: ignore[attr-defined]
+    newcomer.sender.outputs[0]._publisher.close()  # type: ignore[attr-defined]
     stays_latched(scene, Reason.SECOND_PUBLISHER)
     rearms(scene)
