@@ -15,6 +15,9 @@ class TestCauses:
         assert island.tick(skipped=1) == silent(Reason.OVERRUN)
         assert island.tick() == silent(Reason.LATCHED, Reason.OVERRUN)
 
+    def test_no_tick_failed_before_the_first(self) -> None:
+        assert Island(fault_ticks=1).tick(speed=0.0) == WELL
+
     def test_controllers_that_fail(self) -> None:
         island = Island().engage()
         assert [island.tick(failed=True) for _ in range(2)] == [WELL] * 2

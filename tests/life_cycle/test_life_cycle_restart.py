@@ -81,7 +81,7 @@ class TestStall:
 class TestCrash:
     def crash(self, island: Island) -> Life:
         island.begin()
-        island.life_cycle.fault()
+        assert island.life_cycle.fault() is island.life
         return island.life
 
     def test_three_ticks_in_a_row_that_end_with_an_exception(self) -> None:

@@ -94,3 +94,10 @@ def test_a_command_that_did_not_go_out_is_not_what_is_held() -> None:
     stopping = island()
     stopping.life_cycle.sent(Motion(0.5, 0.5, 0.5, 0.5), False, stopping.now)
     assert step(stopping) == ("HOLD", HELD)
+
+
+def test_before_any_command_went_out_nothing_is_held() -> None:
+    stopping = Island(has_ramp=True)
+    stopping.went_out = False
+    stopping.engage()
+    assert step(stopping) == ("HOLD", Motion(0.0, 0.0, 0.0, 0.0))

@@ -38,6 +38,11 @@ def test_three_in_a_row_degrade_and_three_more_end_the_output() -> None:
     ]
 
 
+def test_one_late_tick_may_be_enough_for_each() -> None:
+    overrun = Overrun(replace(PARAMS, overrun_ticks=1), T)
+    assert run(overrun, 1, 1) == [(1, True, False), (2, True, True)]
+
+
 def test_one_tick_in_time_forgives() -> None:
     found = run(Overrun(PARAMS, T), 1, 1, 0, 1, 1, 1, 1, 1, 0, 1)
     assert [state[0] for state in found] == [1, 2, 0, 1, 2, 3, 4, 5, 0, 1]

@@ -23,7 +23,7 @@ class LifeCycle:
     nobody brakes it when commands stop.
     """
 
-    def __init__(self, params: LifeCycleParams, period_s: float, has_ramp: bool = False) -> None:
+    def __init__(self, params: LifeCycleParams, period_s: float, has_ramp: bool) -> None:
         self.life = Life(State.INIT, Reason.WAITING_FOR_INPUT)
         self.overrun = Overrun(params, period_s)
         self._failures, self._stop = Failures(params, self.overrun), Stop(params, period_s)
@@ -93,8 +93,6 @@ class LifeCycle:
             Conditions(blocked, disengaged, barred, arm, self._has_ramp, hold_over, ramp_over),
         )
         state = self.life.state
-        if state is State.ACTIVE:
-            self._barred = Reason.NONE
         if state in (State.INIT, State.SILENT):
             self._failures.forget_outputs()
         self._stop.enter(state, self._speed)

@@ -49,7 +49,7 @@ class StopRamp:
 
     def _steer(self, dt: float) -> float:
         """Hold the angle or lead it to the centre; return the rate [rad/s]."""
-        if self._params.stop_steering == "hold" or self._angle == 0.0:
+        if self._params.stop_steering == "hold":
             return 0.0
         most = self._params.stop_steering_rate * dt
         change = min(most, max(-most, -self._angle))
