@@ -74,6 +74,34 @@ def test_any_other_type_is_a_type_error_and_no_compilation(index: int, argument:
     assert dispatcher.signatures == before and len(before) == 1
 
 
+@pytest.mark.parametrize(
+    ("index", "argument"),
+    [
+        (0, np.zeros(1, INPUTS)),
+        (0, np.zeros((1, 1), PARAMS)),
+        (1, frozen(new_points())),
+        (1, new_points()[::2]),
+        (1, np.zeros((9, 11))),
+        (1, new_points()[:0]),
+        (1, None),
+    ],
+    ids=["record", "shape", "read-only", "strided", "numbers", "empty", "none"],
+)
+def test_only_what_the_kernel_can_take_is_bound(index: int, argument: Any) -> None:
+    arrays = good()[:2]
+    arrays[index] = argument
+    with pytest.raises(TypeError, match=f"check_trajectory: argument {index + 1} "):
+        check_trajectory.bind(*arrays)
+
+
+def test_a_bound_kernel_does_the_same() -> None:
+    params, points, count = good()
+    check = check_trajectory.bind(params, points)
+    assert check(count) == check_trajectory.call(params, points, count) == Refusal.ACCEPTED
+    points["x"][3] = np.nan
+    assert check(count) == check_trajectory.call(params, points, count) == Refusal.NOT_FINITE
+
+
 @needs_jit
 def test_a_number_is_converted_and_not_compiled_for() -> None:
     """Numba converts an int to the float that was declared."""
