@@ -86,3 +86,12 @@ def test_within(value: float, expected: object) -> None:
 )
 def test_share(value: float, confined: float, start: float, expected: float) -> None:
     assert share(value, confined, start) == expected
+
+
+def test_the_strictest_of_a_span_are_the_lower_ends() -> None:
+    table = SpeedTable(limited(speed_points=(0.0, 10.0), jerk=(3.0, 1.0), acceleration=(1.0, 2.0)))
+    drive, rise = COLUMNS.index("acceleration"), COLUMNS.index("jerk")
+    for speed, expected in ((-1.0, (1.0, 3.0)), (0.0, (1.0, 1.0)), (10.0, (2.0, 1.0))):
+        found = table.strictest(speed)
+        assert (found[drive], found[rise]) == expected
+        assert found[0] == table.at(speed)[0]

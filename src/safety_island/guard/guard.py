@@ -8,6 +8,7 @@ from safety_island.guard.confine import Bounds, confine, share, within
 from safety_island.guard.limit import Limit, Verdict
 from safety_island.guard.params import GuardParams
 from safety_island.guard.proposal import Decision, Proposal
+from safety_island.guard.shortcut import Sent, Shortcut
 from safety_island.guard.table import Limits, SpeedTable
 
 FUTURE_TOLERANCE_S = 1e-3
@@ -31,10 +32,6 @@ _AT_FIRST = (_DISTANCE, _LATERAL, _ANGLE)
 _PUSHES = (_JERK, _ACCELERATION, _VELOCITY)
 
 
-_Sent = tuple[float, float, float, float]
-"""Of a command that was let through: when [s], angle [rad], its tangent, acceleration [m/s^2]."""
-
-
 def _all_finite(*values: float) -> bool:
     return all(map(isfinite, values))
 
@@ -48,7 +45,8 @@ class Guard:
         self._fastest = limits.velocity
         self._shortest, self._longest = limits.shortest_step, limits.longest_step
         self._wheel_base, self._timeout = wheel_base, timeout_s
-        self._sent: _Sent | None = None
+        self._keeps_all = Shortcut(self._table, self._fastest, wheel_base).keeps_all
+        self._sent: Sent | None = None
         self._sequence: float = -inf
 
     def check(
@@ -62,10 +60,22 @@ class Guard:
         refusal = self._refusal(proposal, speed, steering)
         if refusal:
             return Decision(_REFUSED, refusal, nan, nan, nan, nan)
-        now, _, self._sequence, asked_angle, asked_rotation, asked_velocity, asked_push = proposal
+        now, _, self._sequence, angle, rotation, velocity, push = proposal
+        sent, step, slope = self._sent, self._step(now), tan(angle)
+        if sent is not None and self._keeps_all(proposal, slope, sent, speed, steering, step):
+            self._sent = now, angle, slope, push
+            # Decision's own constructor takes twice as long
+            return tuple.__new__(Decision, (_PASSED, 0, angle, rotation, velocity, push))
+        return self._judge(proposal, speed, steering, engaged, step)
+
+    def _judge(
+        self, proposal: Proposal, speed: float, steering: float, engaged: bool, step: float
+    ) -> Decision:
+        """Hold each value against its limits, and move it to where it keeps them."""
+        now, _, _, asked_angle, asked_rotation, asked_velocity, asked_push = proposal
         turns_round = speed * asked_velocity < 0.0 and abs(speed) > ROLLING
         speed = abs(speed)
-        limits, step = self._table.at(speed), self._step(now)
+        limits = self._table.at(speed)
         distance = limits[3] if engaged else inf
         bounds = self._angles(limits, speed, steering, distance, step)
         angle, bits = confine(asked_angle, bounds)
@@ -78,9 +88,7 @@ class Guard:
         push, pushed = confine(asked_push, self._accelerations(limits, may_drive, step))
         self._sent = now, angle, tan(angle), push
         bits |= turned | driven | pushed
-        verdict = _CLAMPED if bits else _PASSED
-        # Decision's own constructor takes twice as long
-        return tuple.__new__(Decision, (verdict, bits, angle, rotation, velocity, push))
+        return Decision(_CLAMPED if bits else _PASSED, bits, angle, rotation, velocity, push)
 
     def forget(self) -> None:
         """Let the next command have no predecessor, as after a silence; its number must rise."""

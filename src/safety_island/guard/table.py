@@ -42,6 +42,12 @@ class SpeedTable:
             *((a, first, _slopes(b - a, first, last)) for (a, b), (first, last) in spans),
             (0.0, at_points[-1], flat),
         )
+        pairs = pairwise((at_points[0], *at_points, at_points[-1]))
+        self._strictest = tuple(tuple(map(min, *pair)) for pair in pairs)
+
+    def strictest(self, speed: float) -> Limits:
+        """Return limits that are the strictest between two points, at a speed [m/s]."""
+        return self._strictest[bisect_right(self._points, speed)]
 
     def at(self, speed: float) -> Limits:
         """Return the limits at a speed [m/s]. Written out, for a loop takes three times as long."""
