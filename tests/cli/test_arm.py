@@ -11,8 +11,8 @@ from safety_island.dds.config import URI
 from safety_island.dds.topics import ARM, STATUS
 from safety_island.life_cycle.state import State
 from safety_island.messages.arm import ArmResult
-from safety_island.messages.status import StatusWriter
-from tests.cli.status.samples import STALE, FakeIsland, writer_of
+from safety_island.messages.status_fields import Status
+from tests.cli.status.samples import STALE, FakeIsland, sample
 
 Capture = pytest.CaptureFixture[str]
 
@@ -22,12 +22,11 @@ def _no_configuration_of_the_user(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv(URI, raising=False)
 
 
-def answer(result: ArmResult) -> Callable[[StatusWriter], None]:
-    def give(writer: StatusWriter) -> None:
-        writer.fields.arm_result[0] = result
+def answer(result: ArmResult) -> Callable[[Status], Status]:
+    def give(status: Status) -> Status:
         if result is ArmResult.ARMED:
-            writer.fields.state[0], writer.fields.published[0] = State.ACTIVE, True
-            writer.fields.reason[0] = 0
+            status = status._replace(state=State.ACTIVE, published=True, reason=0)
+        return status._replace(arm_result=result)
 
     return give
 
@@ -43,7 +42,7 @@ def answer(result: ArmResult) -> Callable[[StatusWriter], None]:
 def test_the_answer_is_told(
     domain_id: int, capsys: Capture, result: ArmResult, code: int, said: str
 ) -> None:
-    with FakeIsland(domain_id, writer_of(**STALE), answer(result)) as island:
+    with FakeIsland(domain_id, sample(**STALE), answer(result)) as island:
         assert main(["arm", "--domain", str(domain_id), "--timeout", "20"]) == code
     assert capsys.readouterr().out.startswith(said)
     (nonce,) = island.requests
@@ -51,7 +50,7 @@ def test_the_answer_is_told(
 
 
 def test_each_request_has_its_own_nonce(domain_id: int) -> None:
-    with FakeIsland(domain_id, writer_of(), answer(ArmResult.NOT_NEEDED)) as island:
+    with FakeIsland(domain_id, sample(), answer(ArmResult.NOT_NEEDED)) as island:
         for _ in range(2):
             assert main(["arm", "--domain", str(domain_id), "--timeout", "20"]) == 0
     assert len(set(island.requests)) == 2
@@ -65,13 +64,13 @@ def test_no_island_is_one_line(domain_id: int, capsys: Capture) -> None:
 
 
 def test_an_island_that_does_not_answer(domain_id: int, capsys: Capture) -> None:
-    with FakeIsland(domain_id, writer_of()):
+    with FakeIsland(domain_id, sample()):
         assert main(["arm", "--domain", str(domain_id), "--timeout", "2"]) == 1
     error = capsys.readouterr().err
     assert error.count("\n") == 1 and "none in 2 s answers the request" in error
 
 
 def test_an_island_that_does_not_listen(domain_id: int, capsys: Capture) -> None:
-    with FakeIsland(domain_id, writer_of(), listens=False):
+    with FakeIsland(domain_id, sample(), listens=False):
         assert main(["arm", "--domain", str(domain_id), "--timeout", "2"]) == 1
     assert f"nobody listens on {ARM.name}" in capsys.readouterr().err

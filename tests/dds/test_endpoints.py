@@ -9,9 +9,10 @@ import pytest
 from cyclonedds import _clayer
 
 from safety_island.dds import binding, topics
-from safety_island.dds.endpoints import Publisher, Sample, Subscription
+from safety_island.dds.endpoints import Publisher, Subscription
 from safety_island.dds.participant import Participant
 from safety_island.dds.qos import DEFAULT, LATCHED, Qos
+from safety_island.dds.sample import Sample
 from safety_island.dds.topics import TopicEntry
 from safety_island.messages import codec, inputs
 from safety_island.messages.wire import Time

@@ -18,7 +18,7 @@ PLACES: dict[str, Callable[[Scene], tuple[Any, str]]] = {
     "identity.blocked": lambda scene: (scene.node.identity, "blocked"),
     "inputs.take": lambda scene: (scene.node.inputs, "take"),
     "inputs.blocked": lambda scene: (scene.node.inputs, "blocked"),
-    "inputs.disengaged": lambda scene: (scene.node.inputs, "disengaged"),
+    "inputs.disengaged": lambda scene: (scene.node.inputs, "_disengaged"),
     "follower.allow_control": lambda scene: (scene.follower, "allow_control"),
     "follower.is_ready": lambda scene: (scene.follower, "is_ready"),
     "follower.run_lateral": lambda scene: (scene.follower, "run_lateral"),

@@ -189,4 +189,4 @@ def test_row_13_an_island_that_joins_late_hears_the_mode() -> None:
         report = late.tick()
     assert late.inputs.items[-1].accepted == 1
     assert (report.life.state, report.life.reason) == (State.INIT, Reason.SECOND_ISLAND)
-    assert late.inputs.disengaged() is Reason.NONE
+    assert late.inputs.disengaged is Reason.NONE

@@ -54,7 +54,7 @@ class Target:
         accepted, refused = self.item.accepted, self.item.refused.total()
         self.item.stamps.forget()
         self._writer.release([data])
-        self.item.take(self.scene.now, self.scene.now, self.scene.clock.wall_ns())
+        self.item.take(self.scene.now, self.scene.now)
         changed = (self.item.accepted - accepted, self.item.refused.total() - refused)
         assert changed in ((1, 0), (0, 1))
         return changed == (1, 0)

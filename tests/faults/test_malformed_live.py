@@ -87,7 +87,7 @@ class Live:
 
         def judged() -> int:
             now = self.clock.monotonic_ns() / 1e9
-            self.node.inputs.take(now, now, 0)
+            self.node.inputs.take(now, now)
             return self.item.accepted - accepted + self.item.refused.total() - refused
 
         with suppress(AssertionError):

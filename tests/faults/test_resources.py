@@ -72,14 +72,15 @@ def lasting(scene: Scene, seconds: float) -> None:
         scene.platform.logger.lines.clear()
 
 
-@pytest.mark.parametrize("place", ["run_lateral", "run_longitudinal", "sync", "offer_odometry"])
+@pytest.mark.parametrize("place", ["run_lateral", "run_longitudinal", "sync", "_offer"])
 def test_row_49_without_memory_the_process_ends(
     place: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """No command of that tick, and an exception that no handler swallows: exit code 1."""
     scene = Scene().drive()
     ticks = len(scene.rows)
-    monkeypatch.setattr(scene.follower, place, fail_with(MemoryError()))
+    where = scene.input("odometry") if place == "_offer" else scene.follower
+    monkeypatch.setattr(where, place, fail_with(MemoryError()))
     with pytest.raises(MemoryError):
         run(scene, 1.0)
     assert len(scene.rows) == ticks

@@ -8,13 +8,16 @@ import pytest
 
 from safety_island.gate.clock_search import SEARCH_SHARE, ClockSearch
 
+NEVER = -math.inf
+"""When a stamp that fits came: not at all."""
+
 Seen = tuple[int, float]
 """Stamp [ns] and time of arrival [s]."""
 
 
 def found(*seen: Seen) -> list[bool]:
     search = ClockSearch(0.5)
-    return [search.finds(stamp_ns, now) for stamp_ns, now in seen]
+    return [search.finds(stamp_ns, now, NEVER) for stamp_ns, now in seen]
 
 
 def test_stamps_that_advance_for_half_the_limit_are_a_clock() -> None:
@@ -37,14 +40,22 @@ def test_of_one_tick_the_first_alone_tells() -> None:
     assert found((5, 9.0), (4, 9.0), (3, 9.0), (6, 9.25)) == [False, False, False, True]
 
 
-def test_the_end_of_a_search() -> None:
+@pytest.mark.parametrize(("fitted_at", "is_found"), [(8.9, True), (9.0, False), (9.1, False)])
+def test_one_that_fits_ends_the_search(fitted_at: float, is_found: bool) -> None:
     search = ClockSearch(0.5)
-    assert not search.finds(5, 9.0)
-    search.seen_at = -math.inf
-    assert not search.finds(6, 9.25)
+    assert not search.finds(5, 9.0, NEVER)
+    assert search.finds(6, 9.25, fitted_at) is is_found
+    assert search.finds(7, 9.5, fitted_at)
+
+
+def test_beside_one_that_fits_in_the_same_tick_nothing_is_found() -> None:
+    search = ClockSearch(0.5)
+    assert not search.finds(5, 9.0, NEVER)
+    assert search.finds(6, 9.25, NEVER)
+    assert not search.finds(6, 9.25, 9.25)
 
 
 def test_without_an_age_limit_nothing_is_ever_found() -> None:
     search = ClockSearch(math.inf)
-    assert not search.finds(5, 9.0)
-    assert not search.finds(6, 1e9)
+    assert not search.finds(5, 9.0, NEVER)
+    assert not search.finds(6, 1e9, NEVER)

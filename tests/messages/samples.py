@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -10,7 +11,9 @@ import numpy as np
 
 from safety_island.messages import arm, inputs, outputs, status, trajectory
 from safety_island.messages.points import POINT, Points
-from safety_island.messages.wire import Time
+from safety_island.messages.status import NO_VALUE, STATUS_RECORD
+from safety_island.messages.status_fields import Status
+from safety_island.messages.wire import HEADER_LE, Time
 
 STAMP = Time(1_700_000_000, 123_456_789)
 
@@ -41,12 +44,26 @@ def trajectory_bytes(count: int, frame_id: str = "map") -> bytes:
 
 def status_bytes() -> bytes:
     """Return a status with a different number in every byte that may have any value."""
-    writer = status.StatusWriter()
-    raw = writer.record.view("u1")
+    record = np.zeros(1, STATUS_RECORD)
+    raw = record.view("u1")
     raw[:] = np.arange(len(raw)) % 101 + 1
     for name in ("degraded", "armed", "engaged", "control_enabled", "published"):
-        writer.record[name] = True
-    return writer.encode()
+        record[name] = True
+    return HEADER_LE + record.tobytes()
+
+
+def status_of_nothing() -> Status:
+    """Return the status of an island that has heard and done nothing."""
+    zero = status.decode_status(HEADER_LE + bytes(STATUS_RECORD.itemsize))
+    row = zero.inputs[0]._replace(
+        age=math.inf, age_limit=math.inf, transport_delay=math.nan, last_refusal=NO_VALUE
+    )
+    errors = ("lateral_error", "yaw_error", "residual", "stop_dist", "target_vel")
+    command = ("command_angle", "command_rate", "command_velocity", "command_acceleration")
+    enumerations = ("subject", "longitudinal_state", "mpc_status", "guard_verdict")
+    unknown: dict[str, Any] = dict.fromkeys((*errors, *command), math.nan)
+    unknown |= dict.fromkeys(enumerations, NO_VALUE)
+    return zero._replace(inputs=(row,) * len(zero.inputs), **unknown)
 
 
 def hot_messages(count: int = 3) -> list[Hot]:

@@ -49,7 +49,7 @@ def test_an_exception_over_a_sample_refuses_that_sample(
 
     rig.everything(ROWS)
     rig.tick()
-    monkeypatch.setattr(follower, "offer_steering", fail)
+    monkeypatch.setattr(rig.node.inputs.items[2], "_offer", fail)
     rig.steering()
     assert rig.tick().published
     assert rig.node.inputs.items[2].refused == {SampleReason.FAULT: 1}

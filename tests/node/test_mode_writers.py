@@ -24,8 +24,12 @@ def first(rig: Rig) -> MemoryPublisher:
     assert rig.tick().published
     rig.mode(Mode.AUTONOMOUS, enabled=True)
     rig.tick()
-    assert rig.node.inputs.disengaged() is Reason.NONE
+    assert disengaged(rig) is Reason.NONE
     return rig._publishers[topics.OPERATION_MODE]
+
+
+def disengaged(rig: Rig) -> Reason:
+    return rig.node.inputs.disengaged
 
 
 def second(rig: Rig) -> MemoryPublisher:
@@ -44,10 +48,10 @@ def test_what_a_second_publisher_said_counts_when_the_first_is_gone(
     assert rig.tick().refused == 1
     item = rig.node.inputs.items[MODE]
     assert item.refused == {SampleReason.OTHER_PUBLISHER: 1}
-    assert rig.node.inputs.disengaged() is Reason.NONE
+    assert disengaged(rig) is Reason.NONE
     first.close()
     rig.tick()
-    assert rig.node.inputs.disengaged() is Reason.NOT_AUTONOMOUS
+    assert disengaged(rig) is Reason.NOT_AUTONOMOUS
     assert item.accepted_at == rig.clock.monotonic_ns() / 1e9
 
 
@@ -58,11 +62,11 @@ def test_a_second_publisher_that_went_first_is_not_heard(rig: Rig, first: Memory
     other.close()
     first.close()
     rig.tick()
-    assert rig.node.inputs.disengaged() is Reason.MODE_WRITER_GONE
+    assert disengaged(rig) is Reason.MODE_WRITER_GONE
 
 
 def test_the_next_publisher_may_have_another_clock(rig: Rig, first: MemoryPublisher) -> None:
     second(rig).write(told(rig, Mode.STOP, Time(1, 0)))
     first.close()
     rig.tick()
-    assert rig.node.inputs.disengaged() is Reason.NOT_AUTONOMOUS
+    assert disengaged(rig) is Reason.NOT_AUTONOMOUS

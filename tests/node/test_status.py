@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import numpy as np
 import pytest
 
 from safety_island.control.status import ControllerLimit, LongitudinalState, Mode, MpcStatus
@@ -16,7 +17,7 @@ from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State
 from safety_island.messages.status import NO_VALUE, decode_status
 from safety_island.messages.status_fields import InputStatus, Status
-from safety_island.node.input_status import FIELDS
+from safety_island.node.input_status import input_values
 from safety_island.node.inputs import INPUTS
 from safety_island.platform import Tick
 from tests.node.rig import ROWS, FakeFollower, Rig
@@ -128,5 +129,18 @@ def test_before_anything_came_nothing_is_made_up(rig: Rig, heard: Any) -> None:
         assert item.age == math.inf
 
 
-def test_the_inputs_are_told_in_the_order_of_the_message() -> None:
-    assert tuple(FIELDS) == InputStatus._fields
+def test_the_inputs_are_told_in_the_order_of_the_message(rig: Rig) -> None:
+    item = rig.node.inputs.items[ODOMETRY]
+    item.refusals[4], item.writer_guid = 1, bytes(range(16))
+    item.accepted, item.subscription.received, item.superseded, item.refused_in_a_row = 2, 3, 4, 5
+    item.stamps.delay_s, item.warnings, item.last_refusal = 0.25, 6, 7
+    item.writers.update(frozenset({b"a" * 16}), 0.0)
+    item.writers.update(frozenset({b"a" * 16, b"b" * 16}), 1.0)
+    counts = (0, 1, *(0,) * 30)
+    expected = InputStatus(
+        counts, item.writer_guid, 2, 3, 4, 5, 0.125, item.age_limit_s, 0.25, 6, 7, 1
+    )
+    refusals, *rest = input_values([item], [0.125])
+    found = InputStatus(tuple(np.frombuffer(refusals, "<u4").tolist()), *rest)
+    assert found == expected
+    assert input_values([item, item], [0.125, 0.125])[len(found) :] == [refusals, *rest]

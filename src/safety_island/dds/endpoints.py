@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 from cyclonedds.core import DDSException, InstanceState, ReadCondition, SampleState, ViewState
 from cyclonedds.domain import DomainParticipant
@@ -16,21 +16,13 @@ from safety_island.dds.errors import DdsError
 from safety_island.dds.names import ros_topic_name
 from safety_island.dds.opaque import OpaqueTopic
 from safety_island.dds.qos import Qos, cyclone_qos
+from safety_island.dds.sample import Sample
 from safety_island.dds.types import type_hash_data
 
 _UNREAD = ViewState.Any | InstanceState.Any | SampleState.NotRead
 _BATCH = 1024
 UNKNOWN_WRITER = bytes(16)
 """Stands for a writer that was gone before its sample was taken."""
-
-
-class Sample(NamedTuple):
-    """One received message: serialized CDR with its header, and where it came from."""
-
-    data: bytes
-    source_timestamp_ns: int
-    """The writer's wall clock when it wrote [ns since the epoch]."""
-    writer_guid: bytes
 
 
 class Publisher:

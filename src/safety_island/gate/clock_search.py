@@ -12,20 +12,25 @@ a clock (set back, or a successor's) rather than as samples that were overtaken 
 class ClockSearch:
     """Looks at stamps that do not fit what is held; told the time [s, monotonic].
 
-    It begins anew with a stamp that does not advance, and after a gap of the age limit [s].
-    ``seen_at`` is the time of the last stamp; -inf ends the search.
+    It begins anew with a stamp that does not advance, after a gap of the age limit [s], and when a
+    stamp has fitted.
     """
 
     def __init__(self, limit_s: float) -> None:
-        self.seen_at = -math.inf
+        self._seen_at = -math.inf
         self._limit_s = limit_s
         self._stamp_ns = 0
         self._since = 0.0
 
-    def finds(self, stamp_ns: int, now: float) -> bool:
-        """Whether stamps have advanced for long enough, up to this one."""
-        if now > self.seen_at:  # of one tick the newest comes first, and it alone tells
-            if stamp_ns <= self._stamp_ns or now - self.seen_at > self._limit_s:
-                self._since = now
-            self._stamp_ns, self.seen_at = stamp_ns, now
+    def finds(self, stamp_ns: int, now: float, fitted_at: float) -> bool:
+        """Whether stamps have advanced for long enough, up to this one.
+
+        ``fitted_at`` [s]: when the last one that did fit came.
+        """
+        is_first = now > self._seen_at  # of one tick the newest comes first, and it alone tells
+        begins = is_first and (stamp_ns <= self._stamp_ns or now - self._seen_at > self._limit_s)
+        if begins or fitted_at >= self._seen_at:
+            self._since = now
+        if is_first:
+            self._stamp_ns, self._seen_at = stamp_ns, now
         return now - self._since >= self._limit_s * SEARCH_SHARE

@@ -19,6 +19,8 @@ FORGET_RATE = 0.001
 """Rate [s/s] at which a delay is forgotten: two clocks may drift apart by 1000 ppm at most."""
 
 _REMEMBERED = 1.0 - FORGET_RATE
+_STEPPED = -1.0
+"""In place of a delay, which is never below zero: the sender's clock was set."""
 
 STEP_TOLD_S = 1.0
 """Time [s] for which a step of the sender's clock is told."""
@@ -46,8 +48,7 @@ class StampGate:
     def forget(self) -> None:
         """Hold nothing: the next sample is taken whatever its stamp."""
         self.delay_s = self._new_delay_s = 0.0
-        self._held, self._has_stepped = b"", False
-        self._held_ns = -1
+        self._held, self._held_ns = b"", -1
         self._held_at = -math.inf
         self._search = ClockSearch(self.limit_s)
 
@@ -67,7 +68,6 @@ class StampGate:
         is_usual = step_ns > 0 and -self.limit_s <= delay_s <= self.limit_s and not is_successor
         if is_usual and since_s <= BEGIN_ANEW_S and nanosec < NANOSECONDS:
             self._new_delay_s = delay_s if delay_s > 0.0 else 0.0
-            self._has_stepped = False
             return None
         if stamp_ns <= 0 or nanosec >= NANOSECONDS:
             return SampleReason.BAD_STAMP
@@ -80,7 +80,6 @@ class StampGate:
         self, step_ns: int, delay_s: float, now: float, is_successor: bool
     ) -> SampleReason | None:
         self._new_delay_s = 0.0
-        self._has_stepped = False
         if now - self._held_at > BEGIN_ANEW_S:
             return None
         if step_ns < 0:
@@ -88,14 +87,15 @@ class StampGate:
         if delay_s > self.limit_s:
             late = SampleReason.DELAYED
             return self._judge_misfit(late, now) if is_successor else late
-        self._has_stepped = delay_s < -self.limit_s
+        if delay_s < -self.limit_s:
+            self._new_delay_s = _STEPPED
         return None
 
     def _judge_misfit(self, reason: SampleReason, now: float) -> SampleReason | None:
         is_sent_on_change = self.limit_s == math.inf  # refused, it would not be told again
-        if not is_sent_on_change and not self._search.finds(self.stamp_ns, now):
+        if not is_sent_on_change and not self._search.finds(self.stamp_ns, now, self._held_at):
             return reason
-        self._has_stepped = True
+        self._new_delay_s = _STEPPED
         return None
 
     def repeats(self, data: bytes) -> bool:
@@ -104,12 +104,13 @@ class StampGate:
 
     def hold(self, data: bytes, now: float) -> None:
         """Take the sample that was judged last."""
-        if self._has_stepped:
+        delay_s = self._new_delay_s
+        if delay_s < 0.0:
+            delay_s = 0.0
             self.steps_back += self.stamp_ns < self._held_ns
             self.step_told_until = now + STEP_TOLD_S
+        self.delay_s = delay_s
         self._held, self._held_ns, self._held_at = data, self.stamp_ns, now
-        self.delay_s = self._new_delay_s
-        self._search.seen_at = -math.inf
 
 
 _AFTER_STAMP = 12

@@ -15,6 +15,11 @@ _DELAY, _SECOND = int(InputWarning.DELAY), int(InputWarning.SECOND_PUBLISHER)
 _CHANGED, _STEP = int(InputWarning.PUBLISHER_CHANGED), int(InputWarning.CLOCK_STEP)
 
 
+def longest_delay_s(age_limit_s: float) -> float:
+    """Return the delay [s] beyond which it is warned of."""
+    return age_limit_s * DELAY_SHARE
+
+
 def warnings(
     now: float, stamps: StampGate, writers: Writers, rate: RateMeter, is_old: bool, is_off: bool
 ) -> int:
@@ -27,7 +32,7 @@ def warnings(
         bits |= _RATE
     if is_off:
         bits |= _CLOCK
-    if stamps.delay_s > stamps.limit_s * DELAY_SHARE:
+    if stamps.delay_s > longest_delay_s(stamps.limit_s):
         bits |= _DELAY
     if writers.others:
         bits |= _SECOND

@@ -14,6 +14,8 @@ from functools import partial
 from struct import Struct
 from typing import Any
 
+from safety_island.dds.sample import Sample
+from safety_island.gate.clock_gap import clock_gap_s
 from safety_island.gate.content import ContentGate
 from safety_island.gate.newest import newest_first, overtaken
 from safety_island.gate.params import GateParams
@@ -26,7 +28,7 @@ from safety_island.messages.status import INPUT_RECORD, NO_VALUE
 from safety_island.node.follower import InputFollower
 from safety_island.node.inputs import InputSpec
 from safety_island.node.report import describe
-from safety_island.node.transport import Sample, Subscription
+from safety_island.node.transport import Subscription
 from safety_island.platform.interfaces import Logger
 
 _COUNT = Struct("<I")
@@ -71,10 +73,8 @@ class Input:
         """The SampleReason of the last one, NO_VALUE when none was refused."""
         self.accepted_at = -math.inf
         """Monotonic time [s] before which the sample in force was not received."""
-        self.age_s = math.inf
-        """Time since then, as of this tick."""
         self.clock_gap_s = 0.0
-        """Between its stamp and the wall clock, beyond the time that it may have waited here."""
+        """Between its stamps and the wall clock, as of the last ``watch``."""
         self.taken: Sample | None = None
         """The sample that was looked at last."""
         self.writer_guid = b""
@@ -87,22 +87,20 @@ class Input:
         """The newest sample of a publisher that the island does not keep to."""
         self._decode = spec.decoder(follower)
         self._check = None if spec.check is None else partial(spec.check, ContentGate(params))
-        self._offer = partial(spec.offer, follower)
+        self._offer, self._values = spec.offer(follower), spec.values
         self._logger = logger
 
-    def take(self, now: float, since: float, wall_ns: int) -> int:
+    def take(self, now: float, since: float) -> int:
         """Take what came after ``since`` [s], the tick before; return how many were refused."""
         samples = self.subscription.take_all()
         if not samples:
             return 0
         refused = 0
-        self.rate.note(len(samples), now)
         if len(samples) > 1 or self.writers.others:
             samples, refused = self._select(samples)
         for sample in samples:
             if self._accept(sample, now):
                 self.accepted_at = since
-                self.clock_gap_s = abs(wall_ns - self.stamps.stamp_ns) / 1e9 - (now - since)
                 break
             refused += 1
         return refused
@@ -135,6 +133,13 @@ class Input:
         if sample is not None and lives and self._accept(sample, now):
             self.accepted_at = now
 
+    def watch(self, now: float, wall_ns: int) -> None:
+        """Look at what changes slowly: how often it comes, and by which clock."""
+        self.rate.look(self.subscription.received, now)
+        if self.message is not None:
+            stamp_ns = self.message.stamp.nanoseconds
+            self.clock_gap_s = clock_gap_s(stamp_ns, wall_ns, now - self.accepted_at)
+
     def drop(self) -> None:
         """Drop what waits to be taken, and forget when the sample in force came."""
         self.subscription.take_all()
@@ -142,7 +147,7 @@ class Input:
 
     def _accept(self, sample: Sample, now: float) -> bool:
         """Pass a sample through the gate to the controllers; whether it got there."""
-        data, guid = sample.data, sample.writer_guid
+        data, _, guid = sample
         self.taken, self.writer_guid = sample, guid
         stamps = self.stamps
         try:
@@ -155,7 +160,7 @@ class Input:
                 reason = self._check(message, data, stamps)
             if reason is not None:
                 return self._refuse(reason)
-            if verdict := self._offer(message):
+            if verdict := self._offer(*self._values(message)):
                 return self._refuse(SampleReason[verdict.name])
         except DecodeError as error:
             return self._refuse(SampleReason[error.reason.name], str(error))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from operator import attrgetter, gt
+from operator import gt
 from typing import NamedTuple
 
 from safety_island.control.status import Mode
@@ -24,7 +24,6 @@ OPERATION_MODE = 4
 """Places in the table of inputs."""
 
 _NONE, _AUTONOMOUS = Reason.NONE, int(Mode.AUTONOMOUS)
-_AGE_S = attrgetter("age_s")
 
 NO_SUBJECT = 255
 """Stands for: the reason is about no input."""
@@ -65,9 +64,12 @@ class InputSet:
         self._watch = InputWarnings(self.items, params, logger)
         self.ages_s = [math.inf] * len(self.items)
         """Age of each, as of the last ``measure``."""
+        self.disengaged = Reason.WAITING_FOR_INPUT
+        """Why the vehicle is not under control, NONE when it is, as of the last ``take``."""
         self.are_complete = False
         """Whether a sample of every input was accepted."""
         self._unsettled_until = -math.inf
+        self._has_others = False
         self._age_limits = [item.age_limit_s for item in self.items]
 
     def discover(self, now: float) -> None:
@@ -78,22 +80,22 @@ class InputSet:
             if item.writers.others > others:
                 self._logger.warning("%s has %d publishers", item.topic, item.writers.others + 1)
         self._unsettled_until = now + WINDOW_S
+        self._has_others = any(item.writers.others for item in self.items)
         if not self._mode.writers.owner:
             self._mode.hand_over(now)  # what is sent on change is not sent again
 
-    def take(self, now: float, since: float, wall_ns: int) -> int:
+    def take(self, now: float, since: float) -> int:
         """Take what came since the last tick; return how many samples were refused."""
         refused = 0
         for item in self.items:
-            refused += item.take(now, since, wall_ns)
+            refused += item.take(now, since)
         self.measure(now)
+        self.disengaged = self._disengaged()
         return refused
 
     def measure(self, now: float) -> None:
         """Take the age of each."""
-        for item in self.items:
-            item.age_s = now - item.accepted_at
-        self.ages_s = list(map(_AGE_S, self.items))
+        self.ages_s = [now - item.accepted_at for item in self.items]
 
     def drop(self) -> None:
         """Drop what has waited while the process stood still; the operation mode stays."""
@@ -142,9 +144,10 @@ class InputSet:
         """Name the inputs of which no sample was ever accepted."""
         return [item.name for item in self.items if not item.accepted]
 
-    def warn(self, now: float) -> None:
+    def warn(self, now: float, wall_ns: int) -> None:
         """Look which warnings stand, and log those that are new."""
-        self._watch.update(now, self.ages_s, now > self._unsettled_until)
+        is_settled = now > self._unsettled_until and not self._has_others
+        self._watch.update(now, wall_ns, self.ages_s, is_settled)
 
     @property
     def warnings(self) -> list[int]:
@@ -162,8 +165,7 @@ class InputSet:
         message: Steering | None = self.items[STEERING].message
         return 0.0 if message is None else message.steering_tire_angle
 
-    def disengaged(self) -> Reason:
-        """Say why the vehicle is not under control, NONE when it is."""
+    def _disengaged(self) -> Reason:
         mode = self._mode
         state: OperationMode | None = mode.message
         if state is None:

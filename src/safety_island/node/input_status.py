@@ -3,37 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import chain
-from operator import attrgetter
+from typing import Any
 
-from safety_island.messages.status import StatusWriter
 from safety_island.node.input import Input
 
-FIELDS = {
-    "refused": "refusals",
-    "writer_guid": "writer_guid",
-    "accepted": "accepted",
-    "received": "subscription.received",
-    "superseded": "superseded",
-    "refused_in_a_row": "refused_in_a_row",
-    "age": "age_s",
-    "age_limit": "age_limit_s",
-    "transport_delay": "stamps.delay_s",
-    "warnings": "warnings",
-    "last_refusal": "last_refusal",
-    "other_writers": "writers.others",
-}
-"""Field of the status, in the order of the message -> attribute of Input."""
 
-_read = attrgetter(*FIELDS.values())
+def input_values(items: Sequence[Input], ages_s: Sequence[float]) -> list[Any]:
+    """Return what became of the samples of each input, with its age, in the order of the message.
 
-
-class InputStatus:
-    """Writes what becomes of the inputs to their places in the status."""
-
-    def __init__(self, items: Sequence[Input], writer: StatusWriter) -> None:
-        self._items, self._pack = items, writer.pack_inputs()
-
-    def fill(self) -> None:
-        """Write all of it."""
-        self._pack(*chain.from_iterable(map(_read, self._items)))
+    Written out: to get these by a list of their names takes twice as long.
+    """
+    values: list[Any] = []
+    for item, age_s in zip(items, ages_s, strict=True):
+        values += (
+            item.refusals,
+            item.writer_guid,
+            item.accepted,
+            item.subscription.received,
+            item.superseded,
+            item.refused_in_a_row,
+            age_s,
+            item.age_limit_s,
+            item.stamps.delay_s,
+            item.warnings,
+            item.last_refusal,
+            item.writers.others,
+        )
+    return values

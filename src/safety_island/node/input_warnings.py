@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from operator import attrgetter, gt
+from operator import gt
 
 from safety_island.gate.params import GateParams
 from safety_island.gate.warning import EXPLANATIONS, InputWarning
-from safety_island.gate.warnings import warnings
+from safety_island.gate.warnings import longest_delay_s, warnings
 from safety_island.node.input import Input
 from safety_island.platform.interfaces import Logger
 
-_SIGNS = attrgetter("rate.too_low", "stamps.delay_s", "writers.others")
-"""Of an input: what is not zero when rate, delay or publishers may be worth a warning."""
-_CLOCK_STEP, _CLOCK_GAP = attrgetter("stamps.step_told_until"), attrgetter("clock_gap_s")
+WATCH_EVERY_S = 0.5
+"""Time [s] between two looks at what changes slowly: rates, and the senders' clocks."""
 
 
 class InputWarnings:
@@ -24,29 +23,39 @@ class InputWarnings:
         self.bits = [0] * len(items)
         self._items, self._logger = items, logger
         self._oldest_s = [item.age_warning_s for item in items]
+        self._delays = [(item.stamps, longest_delay_s(item.age_limit_s)) for item in items]
         # the last one, the operation mode, was stamped when it changed
         self._widest_gap_s = [params.clock_warning] * (len(items) - 1) + [math.inf]
+        self._watch_at = -math.inf
+        self._is_calm = True
+        """Whether no warning stands, and rates and clocks give no reason for one."""
 
-    def update(self, now: float, ages_s: Sequence[float], is_settled: bool) -> None:
+    def update(self, now: float, wall_ns: int, ages_s: Sequence[float], is_settled: bool) -> None:
         """Look which warnings stand at ``now`` [s, monotonic], and log those that are new.
 
-        ``is_settled``: no publisher came or went within the last second.
+        ``is_settled``: each topic has one publisher, and none came or went within the last second.
         """
-        if is_settled and not any(self.bits) and self._is_calm(now, ages_s):
+        if now >= self._watch_at:
+            self._watch(now, wall_ns)
+        if is_settled and self._is_calm and not self._is_odd(now, ages_s):
             return
         found = [self._look(index, now, age_s) for index, age_s in enumerate(ages_s)]
         if found != self.bits:
             self._tell(found)
+        self._is_calm = not any(found)
 
-    def _is_calm(self, now: float, ages_s: Sequence[float]) -> bool:
-        """Whether there is nothing to warn of: the usual case, told without a look at each."""
-        items = self._items
-        return not (
-            any(map(any, map(_SIGNS, items)))
-            or max(map(_CLOCK_STEP, items)) >= now
-            or any(map(gt, ages_s, self._oldest_s))
-            or any(map(gt, map(_CLOCK_GAP, items), self._widest_gap_s))
-        )
+    def _watch(self, now: float, wall_ns: int) -> None:
+        for item in self._items:
+            item.watch(now, wall_ns)
+        self._watch_at = now + WATCH_EVERY_S
+        self._is_calm = False
+
+    def _is_odd(self, now: float, ages_s: Sequence[float]) -> bool:
+        """Whether ages, delays or steps of clocks give reason for a look at each input."""
+        for stamps, longest_s in self._delays:
+            if stamps.delay_s > longest_s or stamps.step_told_until >= now:
+                return True
+        return any(map(gt, ages_s, self._oldest_s))
 
     def _look(self, index: int, now: float, age_s: float) -> int:
         item = self._items[index]

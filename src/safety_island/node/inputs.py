@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from operator import attrgetter, itemgetter
 from typing import Any, NamedTuple
 
 from safety_island.control.status import Refusal
@@ -27,7 +28,10 @@ class InputSpec(NamedTuple):
     decoder: Callable[[InputFollower], Callable[[bytes], Any]]
     """Makes the function that decodes its samples."""
     check: Callable[[ContentGate, Any, bytes, StampGate], SampleReason | None] | None
-    offer: Callable[[InputFollower, Any], Refusal]
+    offer: Callable[[InputFollower], Callable[..., Refusal]]
+    """Finds the method of the follower that takes the values of a sample."""
+    values: Callable[[Any], tuple[Any, ...]]
+    """Returns these values of a decoded sample."""
     age_limit_s: Callable[[GateParams], float] = lambda params: math.inf
     age_warning_s: Callable[[GateParams], float] = lambda params: math.inf
 
@@ -41,25 +45,18 @@ def _into_the_follower(follower: InputFollower) -> Callable[[bytes], Trajectory]
     return lambda data: decode_trajectory(data, follower.incoming)
 
 
-def _offer_trajectory(follower: InputFollower, message: Trajectory) -> Refusal:
-    return follower.offer_incoming(len(message.points), message.stamp.seconds)
+def _trajectory_values(message: Trajectory) -> tuple[int, float]:
+    return len(message.points), message.stamp.seconds
 
 
-def _offer_odometry(follower: InputFollower, message: codec.Odometry) -> Refusal:
-    return follower.offer_odometry(*message[3:12], message[15])  # neither vz, wx nor wy
+def _fields(kind: Any, *names: str) -> Callable[[Any], tuple[Any, ...]]:
+    """Return a function that gets these fields of a message: in C, for it runs in every tick."""
+    places = [kind._fields.index(name) for name in names]
+    return itemgetter(*places) if names[1:] else itemgetter(slice(places[0], places[0] + 1))
 
 
-def _offer_steering(follower: InputFollower, message: codec.Steering) -> Refusal:
-    return follower.offer_steering(message.steering_tire_angle)
-
-
-def _offer_acceleration(follower: InputFollower, message: codec.Acceleration) -> Refusal:
-    return follower.offer_acceleration(message.ax)
-
-
-def _offer_operation_mode(follower: InputFollower, message: codec.OperationMode) -> Refusal:
-    return follower.offer_operation_mode(message.mode, message.is_autoware_control_enabled)
-
+_ODOMETRY = ("x", "y", "z", "qx", "qy", "qz", "qw", "vx", "vy", "wz")
+_MODE = ("mode", "is_autoware_control_enabled")
 
 INPUTS = (
     InputSpec(
@@ -67,7 +64,8 @@ INPUTS = (
         topics.TRAJECTORY,
         _into_the_follower,
         ContentGate.trajectory,
-        _offer_trajectory,
+        attrgetter("offer_incoming"),
+        _trajectory_values,
         lambda params: params.trajectory_age_limit,
     ),
     InputSpec(
@@ -75,7 +73,8 @@ INPUTS = (
         topics.ODOMETRY,
         _plain(codec.decode_odometry),
         ContentGate.odometry,
-        _offer_odometry,
+        attrgetter("offer_odometry"),
+        _fields(codec.Odometry, *_ODOMETRY),
         lambda params: params.odometry_age_limit,
         lambda params: params.age_warning,
     ),
@@ -84,7 +83,8 @@ INPUTS = (
         topics.STEERING,
         _plain(codec.decode_steering),
         None,
-        _offer_steering,
+        attrgetter("offer_steering"),
+        _fields(codec.Steering, "steering_tire_angle"),
         lambda params: params.steering_age_limit,
         lambda params: params.age_warning,
     ),
@@ -93,7 +93,8 @@ INPUTS = (
         topics.ACCELERATION,
         _plain(codec.decode_acceleration),
         ContentGate.acceleration,
-        _offer_acceleration,
+        attrgetter("offer_acceleration"),
+        _fields(codec.Acceleration, "ax"),
         lambda params: params.acceleration_age_limit,
         lambda params: params.age_warning,
     ),
@@ -102,7 +103,8 @@ INPUTS = (
         topics.OPERATION_MODE,
         _plain(codec.decode_operation_mode),
         None,
-        _offer_operation_mode,
+        attrgetter("offer_operation_mode"),
+        _fields(codec.OperationMode, *_MODE),
     ),
 )
 """The five inputs, in the order in which a tick takes them."""

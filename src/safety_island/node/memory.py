@@ -5,21 +5,13 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Sequence
 from functools import partial
-from typing import NamedTuple
 
 from safety_island.dds.names import dds_topic_name
 from safety_island.dds.qos import INPUT_DEPTH, Qos
+from safety_island.dds.sample import Sample
 from safety_island.errors import ConfigurationError
 from safety_island.messages.registry import lookup
 from safety_island.platform.interfaces import Clock
-
-
-class MemorySample(NamedTuple):
-    """One received message."""
-
-    data: bytes
-    source_timestamp_ns: int
-    writer_guid: bytes
 
 
 class MemorySubscription:
@@ -29,14 +21,14 @@ class MemorySubscription:
         self.received = 0
         self.superseded = 0
         self.invalid = 0
-        self._waiting: deque[MemorySample] = deque(maxlen=INPUT_DEPTH)
+        self._waiting: deque[Sample] = deque(maxlen=INPUT_DEPTH)
 
-    def put(self, sample: MemorySample) -> None:
+    def put(self, sample: Sample) -> None:
         """Receive a message."""
         self.received += 1
         self._waiting.append(sample)
 
-    def take_newest(self) -> MemorySample | None:
+    def take_newest(self) -> Sample | None:
         """Return the newest message since the last call, None when there is none; drop others."""
         samples = self.take_all()
         if not samples:
@@ -44,7 +36,7 @@ class MemorySubscription:
         self.superseded += len(samples) - 1
         return samples[-1]
 
-    def take_all(self) -> Sequence[MemorySample]:
+    def take_all(self) -> Sequence[Sample]:
         """Return the messages since the last call in the order of their arrival."""
         if not self._waiting:
             return ()
@@ -67,7 +59,7 @@ class MemoryPublisher:
         self.guid = guid
         self.failed = 0
         self.last_error = ""
-        self.last: MemorySample | None = None
+        self.last: Sample | None = None
         """For those who subscribe later, where the topic is transient-local."""
         self._clock = clock
         self._readers = readers
@@ -82,7 +74,7 @@ class MemoryPublisher:
         """Send one message; its time stamp is the virtual wall clock. Always possible."""
         if not self._readers and not self._is_latched:
             return True
-        sample = tuple.__new__(MemorySample, (data, self._clock.wall_ns(), self.guid))
+        sample = tuple.__new__(Sample, (data, self._clock.wall_ns(), self.guid))
         for reader in self._readers:
             reader.put(sample)
         if self._is_latched:

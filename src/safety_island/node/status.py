@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 from safety_island.dds import topics
 from safety_island.life_cycle.state import State
-from safety_island.messages.status import StatusWriter
+from safety_island.messages.status import encode_values
 from safety_island.messages.wire import NANOSECONDS
-from safety_island.node.input_status import InputStatus
+from safety_island.node.input_status import input_values
 from safety_island.node.outputs import TopicWriter
 from safety_island.node.report import describe
-from safety_island.node.trace_status import ERRORS, SOLVER, STATES, TraceStatus
+from safety_island.node.trace_status import TraceStatus
 from safety_island.node.transport import Publisher
 
 if TYPE_CHECKING:
@@ -20,28 +20,11 @@ if TYPE_CHECKING:
     from safety_island.node.report import TickReport
 
 _ARMED = (State.ACTIVE, State.HOLD, State.STOP)
-
-
-_SCALARS = (
-    "arm_nonce", "tick", "commands", "memory",
-    *ERRORS,
-    "command_angle", "command_rate", "command_velocity", "command_acceleration",
-    "tick_time", "lateral_time", "longitudinal_time", "lateness",
-    "missed_periods", "missed_periods_total", "overruns",
-    "controller_limits", "guard_limits", "guard_clamped", "guard_refused", "sequence",
-    "output_failures",
-    *SOLVER,
-    "state", "reason", "subject", "latched_cause", "operation_mode",
-    *STATES,
-    "guard_verdict", "output_mode", "arm_result", "other_control_writers",
-    "degraded", "armed", "engaged", "control_enabled", "published",
-)  # fmt: skip
-"""What lies between stamp and inputs, in the order of the message: written in one stroke."""
 _NO_COMMAND = (math.nan,) * 4
 
 
 class StatusTopic(TopicWriter):
-    """Publishes ``safety_island_msgs/msg/Status``, written into one record again and again."""
+    """Publishes ``safety_island_msgs/msg/Status``."""
 
     def __init__(self, node: ControllerNode, publisher: Publisher) -> None:
         super().__init__(topics.STATUS, publisher, node.logger)
@@ -49,40 +32,34 @@ class StatusTopic(TopicWriter):
         """Resident set size, as it was looked up last."""
         self._node, self._mode = node, int(node.mode)
         self._overrun = node.life_cycle.overrun
-        self._writer = writer = StatusWriter()
-        self._stamp = writer.fields.stamp
-        self._pack = writer.pack(*_SCALARS)
-        self._inputs = InputStatus(node.inputs.items, writer)
         self._trace = TraceStatus(node.follower.trace)
         self._commands = self._missed = 0
 
     def send(self, report: TickReport) -> None:
         """Publish the status after a tick; a failure is no reason to stop."""
         try:
-            self._fill(report)
-            self.write(self._writer.encode())
+            self._count(report)
+            self.write(self._encode(report))
         except Exception as error:  # what is only told must not stop what drives
             self._logger.error("no status: %s", describe(error), throttled=True)
 
-    def _fill(self, report: TickReport) -> None:
-        sec, nanosec = divmod(self._node.clock.wall_ns(), NANOSECONDS)
-        self._stamp.sec[0], self._stamp.nanosec[0] = sec, nanosec
-        self._inputs.fill()
+    def _count(self, report: TickReport) -> None:
+        self._commands += report.sent
+        self._missed += report.skipped
         if self._node.controllers.have_run:
             self._trace.read()
         else:
             self._trace.clear()
-        self._commands += report.sent
-        self._missed += report.skipped
-        self._fill_scalars(report)
 
-    def _fill_scalars(self, report: TickReport) -> None:
+    def _encode(self, report: TickReport) -> bytes:
+        """Return the message: all values, in its order."""
         node, command, (state, reason, cause) = self._node, report.command, report.life
-        check, overrun, arming = node.check, self._overrun, node.arming
-        mode = node.inputs.operation_mode
+        check, overrun, arming, inputs = node.check, self._overrun, node.arming, node.inputs
+        mode = inputs.operation_mode
         errors, solver, states, limits = self._trace.last
         sent = report.sent
-        self._pack(
+        return encode_values(
+            *divmod(node.clock.wall_ns(), NANOSECONDS),
             arming.nonce,
             report.number,
             self._commands,
@@ -115,7 +92,8 @@ class StatusTopic(TopicWriter):
             min(len(node.identity.islands.others), 255),
             overrun.degraded,
             state in _ARMED,
-            not node.inputs.disengaged(),
+            not inputs.disengaged,
             mode is not None and mode.is_autoware_control_enabled,
             sent,
+            *input_values(inputs.items, inputs.ages_s),
         )

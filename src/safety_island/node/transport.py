@@ -7,24 +7,9 @@ from typing import Protocol
 
 from safety_island.dds.config import DdsConfig
 from safety_island.dds.qos import Qos
+from safety_island.dds.sample import Sample
 from safety_island.node.memory import MemoryDomain
 from safety_island.platform.interfaces import Platform
-
-
-class Sample(Protocol):
-    """One received message."""
-
-    @property
-    def data(self) -> bytes:
-        """Serialized message, encapsulation header included."""
-
-    @property
-    def source_timestamp_ns(self) -> int:
-        """When it was written, by the writer's own clock [ns]."""
-
-    @property
-    def writer_guid(self) -> bytes:
-        """Identity of the writer."""
 
 
 class Publisher(Protocol):

@@ -14,8 +14,10 @@ from safety_island.gate.reason import SampleReason
 from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State
 from safety_island.messages.arm import decode_arm
-from safety_island.messages.status import StatusWriter, decode_status
-from safety_island.messages.status_fields import Status
+from safety_island.messages.status import NO_VALUE, decode_status, encode_status
+from safety_island.messages.status_fields import InputStatus, Status
+from safety_island.messages.wire import Time
+from tests.messages.samples import status_of_nothing
 
 TRAJECTORY, ODOMETRY, STEERING, ACCELERATION, OPERATION_MODE = range(5)
 AGES = (0.091, 0.016, 0.017, 0.018, 12.5)
@@ -67,44 +69,49 @@ NOT_FINITE: dict[str, Any] = {
 }
 
 
-def writer_of(inputs: dict[int, dict[str, Any]] | None = None, **changes: Any) -> StatusWriter:
-    """Return a writer that holds a status where all is well, with changes to it."""
-    writer = StatusWriter()
-    writer.fields.stamp.sec[0] = 1_700_000_000
-    for place, item in enumerate(writer.inputs):
-        item.age[0], item.age_limit[0], item.transport_delay[0] = AGES[place], LIMITS[place], 0.0012
-        item.accepted[0] = item.received[0] = 500 + place
-        item.writer_guid[:] = bytes([place] * 16)
-        for name, value in (inputs or {}).get(place, {}).items():
-            getattr(item, name)[0] = value
-            if name == "last_refusal" and value < len(item.refused):
-                item.refused[value] = 3
-    for name, value in (WELL | changes).items():
-        getattr(writer.fields, name)[0] = value
-    return writer
-
-
 def sample(inputs: dict[int, dict[str, Any]] | None = None, **changes: Any) -> Status:
     """Return a status where all is well, with changes to it."""
-    return decode_status(writer_of(inputs, **changes).encode())
+    nothing = status_of_nothing()
+    rows = [_row(place, (inputs or {}).get(place, {})) for place in range(len(AGES))]
+    made = WELL | changes | {"stamp": Time(1_700_000_000, 0), "inputs": tuple(rows)}
+    return decode_status(encode_status(nothing._replace(**made)))
+
+
+def _row(place: int, changes: dict[str, Any]) -> InputStatus:
+    row = (
+        status_of_nothing()
+        .inputs[place]
+        ._replace(
+            age=AGES[place],
+            age_limit=LIMITS[place],
+            transport_delay=0.0012,
+            accepted=500 + place,
+            received=500 + place,
+            writer_guid=bytes([place] * 16),
+        )
+    )
+    refused = list(row.refused)
+    if changes.get("last_refusal", NO_VALUE) < len(refused):
+        refused[changes["last_refusal"]] = 3
+    return row._replace(refused=tuple(refused), **changes)
 
 
 class FakeIsland:
     """Sends a status every 20 ms, and answers requests to arm, until its context ends.
 
-    ``answer`` is told the writer when a request came. What it does not model: anything else.
+    ``answer`` is asked for a new status when a request came. What it does not model: anything else.
     """
 
     def __init__(
         self,
         domain_id: int,
-        writer: StatusWriter,
-        answer: Callable[[StatusWriter], None] | None = None,
+        status: Status,
+        answer: Callable[[Status], Status] | None = None,
         *,
         listens: bool = True,
     ) -> None:
         self.requests: list[int] = []
-        self._writer = writer
+        self._said = status
         self._answer = answer
         self._stop = threading.Event()
         self._participant = Participant(domain_id, DdsConfig(interface="lo"), "safety_island")
@@ -116,8 +123,8 @@ class FakeIsland:
     def _run(self) -> None:
         while not self._stop.wait(0.02):
             self._take_request()
-            self._writer.fields.tick[0] += 1
-            self._status.write(self._writer.encode())
+            self._said = self._said._replace(tick=self._said.tick + 1)
+            self._status.write(encode_status(self._said))
 
     def _take_request(self) -> None:
         request = self._arm.take_newest() if self._arm else None
@@ -126,8 +133,7 @@ class FakeIsland:
         nonce = decode_arm(request.data).nonce
         if nonce not in self.requests:
             self.requests.append(nonce)
-            self._answer(self._writer)
-            self._writer.fields.arm_nonce[0] = nonce
+            self._said = self._answer(self._said)._replace(arm_nonce=nonce)
 
     def __enter__(self) -> Self:
         self._thread.start()

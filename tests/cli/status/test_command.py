@@ -15,7 +15,7 @@ from safety_island.dds.config import URI, DdsConfig
 from safety_island.dds.participant import Participant
 from safety_island.dds.topics import STATUS
 from safety_island.life_cycle.reason import Reason
-from tests.cli.status.samples import NOT_FINITE, ODOMETRY, STALE, FakeIsland, writer_of
+from tests.cli.status.samples import NOT_FINITE, ODOMETRY, STALE, FakeIsland, sample
 
 Capture = pytest.CaptureFixture[str]
 LONG = ["--timeout", "20"]
@@ -32,13 +32,13 @@ def words(domain_id: int, *more: str) -> list[str]:
 
 
 def test_why_when_all_is_well(domain_id: int, capsys: Capture) -> None:
-    with FakeIsland(domain_id, writer_of()):
+    with FakeIsland(domain_id, sample()):
         assert main(words(domain_id, "--why", *LONG)) == 0
     assert capsys.readouterr().out.startswith("All is well: the island is ACTIVE")
 
 
 def test_why_when_nothing_is_published(domain_id: int, capsys: Capture) -> None:
-    with FakeIsland(domain_id, writer_of({ODOMETRY: NOT_FINITE}, **STALE)):
+    with FakeIsland(domain_id, sample({ODOMETRY: NOT_FINITE}, **STALE)):
         assert main(words(domain_id, "--why", *LONG)) == 1
         assert main(words(domain_id, "--why", "--json", *LONG)) == 1
     sentence, line = capsys.readouterr().out.splitlines()
@@ -47,7 +47,7 @@ def test_why_when_nothing_is_published(domain_id: int, capsys: Capture) -> None:
 
 
 def test_once_as_a_line_and_as_json(domain_id: int, capsys: Capture) -> None:
-    with FakeIsland(domain_id, writer_of()):
+    with FakeIsland(domain_id, sample()):
         assert main(words(domain_id, "--once", *LONG)) == 0
         assert main(words(domain_id, "--once", "--json", *LONG)) == 0
     line, text = capsys.readouterr().out.splitlines()
@@ -57,7 +57,7 @@ def test_once_as_a_line_and_as_json(domain_id: int, capsys: Capture) -> None:
 
 
 def test_json_streams_every_status_until_it_is_told_to_stop(domain_id: int) -> None:
-    with FakeIsland(domain_id, writer_of()):
+    with FakeIsland(domain_id, sample()):
         command = [sys.executable, "-m", "safety_island", *words(domain_id, "--json")]
         with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
             assert process.stdout is not None
@@ -69,7 +69,7 @@ def test_json_streams_every_status_until_it_is_told_to_stop(domain_id: int) -> N
 
 
 def test_duration_ends_it(domain_id: int, capsys: Capture) -> None:
-    with FakeIsland(domain_id, writer_of(reason=Reason.NONE)):
+    with FakeIsland(domain_id, sample(reason=Reason.NONE)):
         assert main(words(domain_id, "--once", *LONG)) == 0
         assert main(words(domain_id, "--duration", "3")) == 0
     assert capsys.readouterr().out.count("ACTIVE") >= 2
@@ -102,8 +102,9 @@ def test_another_type_on_the_topic_is_named(domain_id: int, capsys: Capture) -> 
 def test_a_status_that_cannot_be_read(
     domain_id: int, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    status = sample()
     monkeypatch.setattr("safety_island.messages.status.SIZE", 2000)
-    with FakeIsland(domain_id, writer_of()):
+    with FakeIsland(domain_id, status):
         assert main(words(domain_id, "--why", *LONG)) == 1
     error = capsys.readouterr().err
     assert "cannot be read" in error and "use the version of the island here" in error
@@ -115,7 +116,7 @@ def test_one_kind_at_a_time(capsys: Capture) -> None:
 
 
 def test_a_closed_reader_ends_it_quietly(domain_id: int) -> None:
-    with FakeIsland(domain_id, writer_of()):
+    with FakeIsland(domain_id, sample()):
         command = [sys.executable, "-m", "safety_island", *words(domain_id, "--json")]
         reading, writing = os.pipe()
         with subprocess.Popen(command, stdout=writing, stderr=subprocess.PIPE) as process:

@@ -11,8 +11,9 @@ from safety_island.cli.status.names import guard_limits_of
 from safety_island.cli.status.values import status_values
 from safety_island.gate.reason import SampleReason
 from safety_island.messages import codec
-from safety_island.messages.status import STATUS, StatusWriter, decode_status
+from safety_island.messages.status import STATUS, decode_status
 from tests.cli.status.samples import NOT_FINITE, ODOMETRY, STALE, sample
+from tests.messages.samples import status_of_nothing
 from tests.messages.strategies import messages
 
 
@@ -42,7 +43,7 @@ def test_numbers_of_enumerations_have_their_names() -> None:
 
 
 def test_what_has_no_value_is_null() -> None:
-    values = status_values(decode_status(StatusWriter().encode()))
+    values = status_values(status_of_nothing())
     none = ("subject", "mpc_status", "longitudinal_state", "guard_verdict", "lateral_error")
     assert [values[name] for name in (*none, "steering_tire_angle")] == [None] * 6
     trajectory = values["inputs"]["trajectory"]

@@ -14,9 +14,10 @@ from safety_island.cli.status.text import duration, plain_line
 from safety_island.cli.status.view import draw
 from safety_island.life_cycle.state import State
 from safety_island.messages import codec
-from safety_island.messages.status import STATUS, StatusWriter, decode_status
+from safety_island.messages.status import STATUS, decode_status
 from safety_island.messages.status_fields import Status
 from tests.cli.status.samples import NOT_FINITE, ODOMETRY, STALE, TRAJECTORY, sample
+from tests.messages.samples import status_of_nothing
 from tests.messages.strategies import messages
 
 BAD = sample(
@@ -73,7 +74,7 @@ def test_what_is_wrong() -> None:
 
 
 def test_before_the_controllers_ran() -> None:
-    text = seen(decode_status(StatusWriter().encode()))
+    text = seen(status_of_nothing())
     for part in ("none went out in this tick", "not run yet", "none acts", "not asked"):
         assert part in text
 

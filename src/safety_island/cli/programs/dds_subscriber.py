@@ -13,8 +13,9 @@ from safety_island.cli.programs.frame import run
 from safety_island.cli.stopping import StopFlag
 from safety_island.dds import topics
 from safety_island.dds.config import DdsConfig
-from safety_island.dds.endpoints import Sample, Subscription
+from safety_island.dds.endpoints import Subscription
 from safety_island.dds.participant import Participant
+from safety_island.dds.sample import Sample
 from safety_island.messages import codec
 from safety_island.messages.errors import DecodeError
 
