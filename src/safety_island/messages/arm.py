@@ -6,8 +6,7 @@ from enum import IntEnum
 from struct import Struct
 from typing import NamedTuple
 
-from safety_island.messages import wire
-from safety_island.messages.framed import little_endian
+from safety_island.messages.framed import of_size
 from safety_island.messages.wire import HEADER_LE, Time
 
 ARM = "safety_island_msgs/msg/Arm"
@@ -43,7 +42,6 @@ def encode_arm(request: Arm) -> bytes:
 
 def decode_arm(data: bytes) -> Arm:
     """Return the request of a safety_island_msgs/msg/Arm; DecodeError when it is none."""
-    data = little_endian(data, ARM)
-    wire.check_end(data, _ARM.size, ARM)
+    data = of_size(data, _ARM.size, ARM)
     _, sec, nanosec, nonce = _ARM.unpack_from(data)
     return Arm(Time(sec, nanosec), nonce)

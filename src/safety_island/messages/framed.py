@@ -22,6 +22,15 @@ def little_endian(data: bytes, type_name: str) -> bytes:
     return to_little_endian(type_name, data)
 
 
+def of_size(data: bytes, size: int, type_name: str) -> bytes:
+    """Return ``data`` as little-endian CDR that fills ``size`` up to padding, else DecodeError."""
+    if len(data) == size and data[:2] == CDR_LE:
+        return data
+    data = little_endian(data, type_name)
+    wire.check_end(data, size, type_name)
+    return data
+
+
 def decode_stamp(data: bytes, type_name: str) -> Time:
     """Return the stamp that stands first in a message."""
     try:

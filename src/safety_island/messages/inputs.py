@@ -11,7 +11,7 @@ from struct import Struct
 from typing import NamedTuple
 
 from safety_island.messages import wire
-from safety_island.messages.framed import Framed, little_endian
+from safety_island.messages.framed import Framed, of_size
 from safety_island.messages.wire import HEADER_LE, Time
 
 ODOMETRY = "nav_msgs/msg/Odometry"
@@ -24,7 +24,9 @@ _TIME = Struct("<iI")
 _ODOMETRY = Framed(ODOMETRY, 2, f"7d{_COVARIANCE}x6d{_COVARIANCE}x")
 _ACCELERATION = Framed(ACCELERATION, 1, f"6d{_COVARIANCE}x")
 _STEERING = Struct("<4siIf")
+_STEERING_SIZE = _STEERING.size
 _MODE = Struct("<4siIB6?")
+_MODE_SIZE = _MODE.size
 _MODE_BODY = slice(12, 19)
 _ZEROS = (0.0,) * 36
 _new = tuple.__new__
@@ -120,8 +122,7 @@ def encode_acceleration(
 
 def decode_steering(data: bytes) -> Steering:
     """Return the angle of an autoware_vehicle_msgs/msg/SteeringReport."""
-    data = little_endian(data, STEERING)
-    wire.check_end(data, _STEERING.size, STEERING)
+    data = of_size(data, _STEERING_SIZE, STEERING)
     _, sec, nanosec, angle = _STEERING.unpack_from(data)
     return _new(Steering, (_new(Time, (sec, nanosec)), angle))
 
@@ -133,8 +134,7 @@ def encode_steering(steering: Steering) -> bytes:
 
 def decode_operation_mode(data: bytes) -> OperationMode:
     """Return the state of an autoware_adapi_v1_msgs/msg/OperationModeState."""
-    data = little_endian(data, OPERATION_MODE)
-    wire.check_end(data, _MODE.size, OPERATION_MODE)
+    data = of_size(data, _MODE_SIZE, OPERATION_MODE)
     return _new(OperationMode, (_new(Time, _TIME.unpack_from(data, 4)), *_mode(data[_MODE_BODY])))
 
 

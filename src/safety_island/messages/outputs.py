@@ -6,7 +6,7 @@ from struct import Struct
 from typing import NamedTuple
 
 from safety_island.messages import wire
-from safety_island.messages.framed import little_endian
+from safety_island.messages.framed import of_size
 from safety_island.messages.wire import HEADER_LE, Time
 
 CONTROL = "autoware_control_msgs/msg/Control"
@@ -68,8 +68,7 @@ def encode_control(command: Control) -> bytes:
 
 def decode_control(data: bytes) -> Control:
     """Return the command of an autoware_control_msgs/msg/Control; DecodeError when it is none."""
-    data = little_endian(data, CONTROL)
-    wire.check_end(data, _CONTROL.size, CONTROL)
+    data = of_size(data, _CONTROL.size, CONTROL)
     found = _CONTROL.unpack_from(data)
     rate_defined, acceleration_defined, jerk_defined = (
         wire.read_bool(found[i], CONTROL) for i in (11, 19, 20)
@@ -96,7 +95,6 @@ def encode_float64_stamped(stamp: tuple[int, int], value: float) -> bytes:
 
 def decode_float64_stamped(data: bytes) -> tuple[Time, float]:
     """Return stamp and number of a tier4_debug_msgs/msg/Float64Stamped."""
-    data = little_endian(data, FLOAT64_STAMPED)
-    wire.check_end(data, _FLOAT64.size, FLOAT64_STAMPED)
+    data = of_size(data, _FLOAT64.size, FLOAT64_STAMPED)
     _, sec, nanosec, value = _FLOAT64.unpack_from(data)
     return Time(sec, nanosec), value

@@ -12,7 +12,7 @@ import numpy as np
 from safety_island.messages import wire
 from safety_island.messages.description import Primitive
 from safety_island.messages.fixed import layout, record_type
-from safety_island.messages.framed import little_endian
+from safety_island.messages.framed import of_size
 from safety_island.messages.registry import struct_of
 from safety_island.messages.status_fields import InputStatus, Status
 from safety_island.messages.wire import HEADER_LE, HEADER_SIZE, Time
@@ -48,8 +48,7 @@ def decode_status(data: bytes) -> Status:
 
     Enumerations are numbers, so that those of a newer island can be read.
     """
-    data = little_endian(data, STATUS)
-    wire.check_end(data, SIZE, STATUS)
+    data = of_size(data, SIZE, STATUS)
     record = np.frombuffer(data, STATUS_RECORD, 1, HEADER_SIZE)
     for place in _FLAGS:
         wire.read_bool(data[HEADER_SIZE + place], STATUS)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from operator import gt
+from operator import attrgetter, gt
 
 from safety_island.gate.params import GateParams
 from safety_island.gate.warning import EXPLANATIONS, InputWarning
@@ -16,6 +16,9 @@ WATCH_EVERY_S = 0.5
 """Time [s] between two looks at what changes slowly: rates, and the senders' clocks."""
 
 
+_DELAY, _STEP_TOLD_UNTIL = attrgetter("delay_s"), attrgetter("step_told_until")
+
+
 class InputWarnings:
     """``bits`` are those of InputWarning for each input, as of the last tick."""
 
@@ -23,7 +26,8 @@ class InputWarnings:
         self.bits = [0] * len(items)
         self._items, self._logger = items, logger
         self._oldest_s = [item.age_warning_s for item in items]
-        self._delays = [(item.stamps, longest_delay_s(item.age_limit_s)) for item in items]
+        self._stamps = [item.stamps for item in items]
+        self._usual_delay_s = min(longest_delay_s(item.age_limit_s) for item in items)
         # the last one, the operation mode, was stamped when it changed
         self._widest_gap_s = [params.clock_warning] * (len(items) - 1) + [math.inf]
         self._watch_at = -math.inf
@@ -52,10 +56,11 @@ class InputWarnings:
 
     def _is_odd(self, now: float, ages_s: Sequence[float]) -> bool:
         """Whether ages, delays or steps of clocks give reason for a look at each input."""
-        for stamps, longest_s in self._delays:
-            if stamps.delay_s > longest_s or stamps.step_told_until >= now:
-                return True
-        return any(map(gt, ages_s, self._oldest_s))
+        return (
+            max(map(_DELAY, self._stamps)) > self._usual_delay_s
+            or max(map(_STEP_TOLD_UNTIL, self._stamps)) >= now
+            or any(map(gt, ages_s, self._oldest_s))
+        )
 
     def _look(self, index: int, now: float, age_s: float) -> int:
         item = self._items[index]
