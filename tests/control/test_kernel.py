@@ -48,20 +48,21 @@ def test_an_entry_takes_what_it_was_declared_with() -> None:
     assert check_trajectory.arguments == (PARAMS, POINT, int)
 
 
+WRONG = [
+    pytest.param(0, np.zeros(1, INPUTS), id="record"),
+    pytest.param(0, np.zeros((1, 1), PARAMS), id="shape"),
+    pytest.param(1, frozen(new_points()), id="read-only"),
+    pytest.param(1, new_points()[::2], id="strided"),
+    pytest.param(1, np.zeros((9, 11)), id="numbers"),
+    pytest.param(1, None, id="none"),
+]
+"""Place of an argument, and what does not fit there."""
+
+
 @needs_jit
 @pytest.mark.parametrize(
     ("index", "argument"),
-    [
-        (0, np.zeros(1, INPUTS)),
-        (0, np.zeros((1, 1), PARAMS)),
-        (1, frozen(new_points())),
-        (1, new_points()[::2]),
-        (1, np.zeros((9, 11))),
-        (1, None),
-        (2, "21"),
-        (2, np.arange(3)),
-    ],
-    ids=["record", "shape", "read-only", "strided", "numbers", "none", "text", "array"],
+    [*WRONG, pytest.param(2, "21", id="text"), pytest.param(2, np.arange(3), id="array")],
 )
 def test_any_other_type_is_a_type_error_and_no_compilation(index: int, argument: Any) -> None:
     check_trajectory.prepare()
@@ -75,17 +76,7 @@ def test_any_other_type_is_a_type_error_and_no_compilation(index: int, argument:
 
 
 @pytest.mark.parametrize(
-    ("index", "argument"),
-    [
-        (0, np.zeros(1, INPUTS)),
-        (0, np.zeros((1, 1), PARAMS)),
-        (1, frozen(new_points())),
-        (1, new_points()[::2]),
-        (1, np.zeros((9, 11))),
-        (1, new_points()[:0]),
-        (1, None),
-    ],
-    ids=["record", "shape", "read-only", "strided", "numbers", "empty", "none"],
+    ("index", "argument"), [*WRONG, pytest.param(1, new_points()[:0], id="empty")]
 )
 def test_only_what_the_kernel_can_take_is_bound(index: int, argument: Any) -> None:
     arrays = good()[:2]
