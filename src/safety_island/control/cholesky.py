@@ -2,7 +2,8 @@
 
 The inner loops run over slices of contiguous rows and start at zero: in that shape LLVM vectorises
 them without reordering a sum. Rows are taken in pairs, so that each earlier row is read once for
-two; an odd order is rounded up with a row of the identity.
+two, and four earlier rows at a time, so that the pair is written once for four; an odd order is
+rounded up with a row of the identity.
 """
 
 import math
@@ -58,16 +59,42 @@ def _reduce_pair(q, k, m):
         first[i] = first_source[i]
     for i in range(width):
         second[i] = second_source[i]
-    for half in range(k // 2):
-        a = q.qp_R[2 * half][k:m]
-        b = q.qp_R[2 * half + 1][k:m]
-        a0 = a[0]
-        a1 = a[1]
-        b0 = b[0]
-        b1 = b[1]
-        for i in range(width):
-            first[i] -= a0 * a[i] + b0 * b[i]
-            second[i] -= a1 * a[i] + b1 * b[i]
+    _subtract_fours(q, k, m)
+    if k % 4 == 2:
+        _subtract_two(q, k, m)
+
+
+@kernel
+def _subtract_fours(q, k, m):
+    """Take off what the rows above contribute to rows k and k + 1, by fours as far as that goes."""
+    first = q.qp_R[k][k:m]
+    second = q.qp_R[k + 1][k:m]
+    for quad in range(k // 4):
+        a = q.qp_R[4 * quad][k:m]
+        b = q.qp_R[4 * quad + 1][k:m]
+        c = q.qp_R[4 * quad + 2][k:m]
+        d = q.qp_R[4 * quad + 3][k:m]
+        a0, b0, c0, d0 = a[0], b[0], c[0], d[0]
+        a1, b1, c1, d1 = a[1], b[1], c[1], d[1]
+        for i in range(m - k):
+            x, y, z, w = a[i], b[i], c[i], d[i]
+            first[i] = first[i] - (a0 * x + b0 * y) - (c0 * z + d0 * w)
+            second[i] = second[i] - (a1 * x + b1 * y) - (c1 * z + d1 * w)
+
+
+@kernel
+def _subtract_two(q, k, m):
+    """Take off what the two rows above contribute to rows k and k + 1."""
+    first = q.qp_R[k][k:m]
+    second = q.qp_R[k + 1][k:m]
+    a = q.qp_R[k - 2][k:m]
+    b = q.qp_R[k - 1][k:m]
+    a0, b0 = a[0], b[0]
+    a1, b1 = a[1], b[1]
+    for i in range(m - k):
+        x, y = a[i], b[i]
+        first[i] -= a0 * x + b0 * y
+        second[i] -= a1 * x + b1 * y
 
 
 @kernel

@@ -33,7 +33,7 @@ def _set_trajectory(params, points, inputs, lat):
     if inputs.n_points < _FEWEST_POINTS:
         return
     if lat.source_id != inputs.trajectory_id:
-        accept_source(points, inputs.n_points, lat)
+        accept_source(params, points, inputs.n_points, lat)
         lat.source_id = inputs.trajectory_id
         last = points[inputs.n_points - 1]
         remember_end(params, lat, last.x, last.y, inputs.trajectory_stamp)

@@ -4,9 +4,10 @@ import math
 
 import numpy as np
 
-from safety_island.control.condense import advance, build_models, condense, is_finite_problem
+from safety_island.control.condense import advance, condense, is_finite_problem
 from safety_island.control.filters import butterworth
 from safety_island.control.geometry import clip, normalize_angle, yaw_of
+from safety_island.control.horizon_models import build_models
 from safety_island.control.kernel import kernel
 from safety_island.control.prediction import (
     between,

@@ -22,19 +22,21 @@ def _filtered_speed(current, target, ds, tau, limit):
     """Velocity filter over one step of ``ds`` [m]: first-order lag, acceleration-limited.
 
     The lag's weight dt / (tau + dt) and the limit are written with dt = ds / speed multiplied out,
-    which leaves one division in the chain from point to point. A speed that has faded away keeps
-    the usual form: what rounding leaves of it is a sign, from which the model makes +-1e-4 m/s.
+    which leaves one division in the chain from point to point, and nothing that waits for it. A
+    speed that has faded away keeps the usual form: what rounding leaves of it is a sign, from which
+    the model makes +-1e-4 m/s.
     """
     speed = abs(current)
+    gap = target - current
     if speed < _FADED:
         dt = ds / max(speed, _EPSILON)
         a = tau / (tau + dt)
         step = a * current + (1.0 - a) * target - current
         return current + clip(step, -limit * dt, limit * dt)
-    step = (target - current) * ds / (tau * speed + ds) if ds > 0.0 else 0.0
-    if abs(step) * speed > limit * ds:
-        step = math.copysign(limit * ds / speed, step)
-    return current + step
+    below = tau * speed + ds
+    if abs(gap) * speed > limit * below:
+        return current + math.copysign(limit * ds / speed, gap)
+    return current + gap * ds / below if ds > 0.0 else current
 
 
 @kernel
@@ -67,10 +69,9 @@ def fill_window(params, lat, speed, ratio, delay, horizon):
     t = 0.0
     lat.wv[0] = v
     lat.wt[0] = t
-    lat.window = 1
+    lat.window = end
     ready = 0
-    while lat.window < end:
-        w = lat.window
+    for w in range(1, end):
         if lat.segment + w >= ready:
             ready = ensure(lat, lat.segment + w)
         ds = 0.0
@@ -85,7 +86,6 @@ def fill_window(params, lat, speed, ratio, delay, horizon):
                 v = _filtered_speed(v, lat.rv[lat.segment + w], ds, tau, limit)
         lat.wv[w] = v
         lat.wt[w] = t
-        lat.window = w + 1
         if w == 1:
             lat.nearest_time = lat.wt[nearest] if ratio < 0.0 else ratio * t
         if t_end == math.inf and w > nearest:
@@ -95,6 +95,7 @@ def fill_window(params, lat, speed, ratio, delay, horizon):
                 target = t_before + (t - t_before) * part
                 t_end = _set_horizon(params, lat, target, delay, horizon)
         if t >= t_end:
+            lat.window = w + 1
             return
     if t_end == math.inf:
         _set_horizon(params, lat, t - _TAIL, delay, horizon)

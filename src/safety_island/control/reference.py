@@ -21,12 +21,8 @@ from safety_island.control.spline import (
     unwrap_step,
 )
 
-_YAW_KNOTS = 48
-"""Knots beyond the one asked for that a spline's value depends on in double precision: the
-influence of a knot falls to a half or less with each step, so 2**-48 is left."""
-
-_YAW_LENGTH = 3.0
-"""The yaw is asked for at the first two stations, which lie within two steps of 1 m at most [m]."""
+_NO_INFLUENCE = 1e-16
+"""Share of a knot's second derivative, in that of an earlier knot, that double precision loses."""
 
 
 @kernel
@@ -41,7 +37,7 @@ def _is_point(points, n):
 
 
 @kernel
-def accept_source(points, n, lat):
+def accept_source(params, points, n, lat):
     """Take over a received trajectory of n >= 3 points: arc length and spline coefficients."""
     if _is_point(points, n):  # it will make no reference, and the one in force stays
         ensure(lat, lat.ref_n)
@@ -58,15 +54,21 @@ def accept_source(points, n, lat):
     last = points[n - 1]
     lat.source_yaw_end = yaw_of(last.qx, last.qy, last.qz, last.qw)
     fit_space_curve(lat.arc, lat.gain, px, py, pz, lat.mx, lat.my, lat.mz, n)
-    _fit_yaw(points, n, lat)
+    _fit_yaw(points, n, lat, 2.0 * params.traj_resample_dist)
     lat.source_n = n
 
 
 @kernel
-def _fit_yaw(points, n, lat):
-    """Fit the yaw spline as far as the start of the path depends on it."""
-    count = min(n, _YAW_KNOTS)
-    while count < n and lat.arc[count - 1] < _YAW_LENGTH:
+def _fit_yaw(points, n, lat, reach):
+    """Fit the yaw spline as far as its start depends on it: up to ``reach`` [m] it is asked for.
+
+    What a knot adds to the one before it is multiplied by ``gain``, which is a half at most.
+    """
+    count = 2
+    influence = 1.0
+    while count < n and influence > _NO_INFLUENCE:
+        if lat.arc[count - 1] >= reach:
+            influence *= lat.gain[count - 1]
         count += 1
     previous = 0.0
     for i in range(count):

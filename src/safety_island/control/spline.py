@@ -38,15 +38,17 @@ def fit_space_curve(arc, gain, x, y, z, mx, my, mz, n):
     for i in range(1, last):
         after = _step_length(x, y, i)
         arc[i + 1] = arc[i] + after
-        pivot = 1.0 / (2.0 * (before + after) - before * gain[i - 1])
-        gain[i] = after * pivot
+        # two divisions, for the next point waits for ``gain`` and not for ``inverse_pivot``
+        pivot = 2.0 * (before + after) - before * gain[i - 1]
+        gain[i] = after / pivot
+        inverse_pivot = 1.0 / pivot
         inverse = 1.0 / after
         tx = (x[i + 1] - x[i]) * inverse
         ty = (y[i + 1] - y[i]) * inverse
         tz = (z[i + 1] - z[i]) * inverse
-        mx[i] = (6.0 * (tx - sx) - before * mx[i - 1]) * pivot
-        my[i] = (6.0 * (ty - sy) - before * my[i - 1]) * pivot
-        mz[i] = (6.0 * (tz - sz) - before * mz[i - 1]) * pivot
+        mx[i] = (6.0 * (tx - sx) - before * mx[i - 1]) * inverse_pivot
+        my[i] = (6.0 * (ty - sy) - before * my[i - 1]) * inverse_pivot
+        mz[i] = (6.0 * (tz - sz) - before * mz[i - 1]) * inverse_pivot
         before = after
         sx = tx
         sy = ty

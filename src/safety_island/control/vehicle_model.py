@@ -7,7 +7,6 @@ matrices of four rows, the unused ones zero.
 
 import math
 
-from safety_island.control.geometry import clip
 from safety_island.control.kernel import kernel
 from safety_island.control.status import VehicleModel
 
@@ -16,17 +15,23 @@ _NO_DELAY = int(VehicleModel.KINEMATICS_NO_DELAY)
 
 
 @kernel
-def state_size(params):
-    """Number of states of the chosen model."""
-    if params.vehicle_model_type == _KINEMATICS:
-        return 3
-    return 2 if params.vehicle_model_type == _NO_DELAY else 4
+def is_kinematic(params):
+    """Whether the chosen model is one of the two kinematic ones."""
+    return params.vehicle_model_type <= _NO_DELAY
 
 
 @kernel
-def yaw_row(params):
-    """Index of the yaw error in the state."""
-    return 1 if params.vehicle_model_type <= _NO_DELAY else 2
+def _steering_of(params, k):
+    """Tyre angle [rad] that holds the curvature ``k`` [1/m], as far as it can be steered, its
+    tangent, and the square of its secant.
+    """
+    tangent = params.wheel_base * k
+    angle = math.atan(tangent)
+    limit = params.max_steer_angle
+    if abs(angle) > limit:
+        angle = math.copysign(limit, angle)
+        tangent = math.tan(angle)
+    return angle, tangent, 1.0 + tangent * tangent
 
 
 @kernel
@@ -35,10 +40,9 @@ def _kinematics(params, v, k, dt, a, b, w):
     wheelbase = params.wheel_base
     if abs(v) < 1e-4:
         v = -1e-4 if v < 0.0 else 1e-4
-    delta = clip(math.atan(wheelbase * k), -params.max_steer_angle, params.max_steer_angle)
-    cos_squared = math.cos(delta) * math.cos(delta)
-    c = v / (wheelbase * cos_squared)
-    w1 = -v * k + v / wheelbase * (math.tan(delta) - delta / cos_squared)
+    angle, tangent, secant_squared = _steering_of(params, k)
+    c = v / wheelbase * secant_squared
+    w1 = -v * k + v / wheelbase * (tangent - angle * secant_squared)
     h = 0.5 * dt
     tau = params.vehicle_model_steer_tau
     g = 1.0 / (1.0 + h / tau)
@@ -60,10 +64,9 @@ def _kinematics(params, v, k, dt, a, b, w):
 def _kinematics_no_delay(params, v, k, dt, a, b, w):
     """Kinematic bicycle whose steering follows at once."""
     wheelbase = params.wheel_base
-    delta = clip(math.atan(wheelbase * k), -params.max_steer_angle, params.max_steer_angle)
-    cos_squared = math.cos(delta) * math.cos(delta)
-    c = v / (wheelbase * cos_squared)
-    w1 = -v / wheelbase * delta / cos_squared
+    angle, _, secant_squared = _steering_of(params, k)
+    c = v / wheelbase * secant_squared
+    w1 = -v / wheelbase * angle * secant_squared
     h = 0.5 * dt
     a[0, 0] = 1.0
     a[0, 1] = dt * v
@@ -162,7 +165,7 @@ def discretize(params, v, k, dt, work, a, b, w):
 @kernel
 def feed_forward(params, v, k):
     """Steering angle [rad] that holds the curvature k; zero below mpc_zero_ff_steer_deg."""
-    if params.vehicle_model_type <= _NO_DELAY:
+    if is_kinematic(params):
         steer = math.atan(params.wheel_base * k)
     else:
         mf, mr = axle_masses(params)
