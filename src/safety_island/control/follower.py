@@ -41,6 +41,7 @@ from safety_island.control.records import (
     INPUTS,
     TRACE,
     Records,
+    cells,
     new_points,
     pack_parameters,
 )
@@ -55,6 +56,8 @@ _MPC_STATUS = {int(status): status for status in MpcStatus}
 """A look here takes a tenth of the time of ``MpcStatus(number)``."""
 _POSE_AND_SPEED = Struct("=10d")
 """The first columns of INPUTS, from x to wz."""
+_PATH = Struct("=2qd")
+"""The last ones: n_points, trajectory_id, trajectory_stamp."""
 
 
 def _refusal_of(value: float) -> Refusal:
@@ -74,7 +77,7 @@ class _Path(NamedTuple):
 class TrajectoryFollower:
     """Autoware's MPC and PID controllers, with the memory of all past ticks.
 
-    Fields of a record are written through views made once: an attribute of a NumPy record costs
+    Fields of a record are written through cells made once: an attribute of a NumPy record costs
     microseconds from Python.
 
     ``inputs``, ``command`` and ``trace`` are records of shape (1,); ``points`` is the trajectory
@@ -89,8 +92,12 @@ class TrajectoryFollower:
         self._stamp = self.command["stamp"]
         self.trace: Records = np.zeros(1, TRACE)
         reset_longitudinal_trace(self.trace)
-        self._cells = {name: self.inputs[name] for name in INPUTS.names}
-        self._write_pose = partial(_POSE_AND_SPEED.pack_into, self.inputs.view(np.uint8).data, 0)
+        cell, memory = cells(self.inputs), self.inputs.view(np.uint8).data
+        self._steer, self._ax = cell["steer"], cell["ax"]
+        self._mode, self._enabled = cell["mode"], cell["enabled"]
+        self._write_pose = partial(_POSE_AND_SPEED.pack_into, memory, 0)
+        self._write_path = partial(_PATH.pack_into, memory, INPUTS.fields["n_points"][1])
+        self._paths = 0
         self._missing = set(INPUT_NAMES)
         self._is_enabled = False
         self._is_allowed = True
@@ -99,10 +106,8 @@ class TrajectoryFollower:
         self._lateral = new_lateral_state(parameters)
         self._longitudinal = new_longitudinal_state()
         self._work = new_longitudinal_work()
-        self._convergence = (
-            self.trace["is_steer_converged"],
-            self._longitudinal["is_steer_converged"],
-        )
+        self._is_converged = cells(self.trace)["is_steer_converged"]
+        self._was_converged = cells(self._longitudinal)["is_steer_converged"]
         self._qp: Records = np.zeros(1, QP)
         self._solve = self._external_solver()
         self._now, self._next = self._new_path(), self._new_path()
@@ -155,9 +160,8 @@ class TrajectoryFollower:
         if refusal := self._next.check(n):
             return Refusal(refusal)
         self._now, self._next = self._next, self._now
-        self._cells["n_points"][0] = n
-        self._cells["trajectory_id"][0] += 1
-        self._cells["trajectory_stamp"][0] = stamp
+        self._paths += 1
+        self._write_path(n, self._paths, stamp)
         self._has_path = self._has_path or n >= _FEWEST_FOR_MPC
         self._missing.discard("trajectory")
         return _ACCEPTED
@@ -176,16 +180,20 @@ class TrajectoryFollower:
         wz: float,
     ) -> Refusal:
         """Offer the ego's pose in the map [m] and its body velocity [m/s, rad/s]."""
-        total = x + y + z + vx + vy + wz  # finds the NaN that min and max may hide
-        is_near = min(x, y, z) >= -MAX_POSITION and max(x, y, z) <= MAX_POSITION
-        is_slow = min(vx, vy) >= -MAX_SPEED and max(vx, vy) <= MAX_SPEED
-        if not (is_near and is_slow and -MAX_TURN <= wz <= MAX_TURN):
-            return _refusal_of(total)
+        if not (  # NaN is within nothing
+            -MAX_POSITION <= x <= MAX_POSITION
+            and -MAX_POSITION <= y <= MAX_POSITION
+            and -MAX_POSITION <= z <= MAX_POSITION
+            and -MAX_SPEED <= vx <= MAX_SPEED
+            and -MAX_SPEED <= vy <= MAX_SPEED
+            and -MAX_TURN <= wz <= MAX_TURN
+        ):
+            return _refusal_of(x + y + z + vx + vy + wz)
         square = qx * qx + qy * qy + qz * qz + qw * qw
-        if not (MIN_SQUARE_NORM <= square <= MAX_SQUARE_NORM and math.isfinite(total)):
-            finite = math.isfinite(total + qx + qy + qz + qw)
-            return Refusal.BAD_QUATERNION if finite else Refusal.NOT_FINITE
-        if abs(square - 1.0) > UNIT_TOLERANCE:
+        if not -UNIT_TOLERANCE <= square - 1.0 <= UNIT_TOLERANCE:
+            if not MIN_SQUARE_NORM <= square <= MAX_SQUARE_NORM:
+                finite = math.isfinite(qx + qy + qz + qw)
+                return Refusal.BAD_QUATERNION if finite else Refusal.NOT_FINITE
             scale = 1.0 / math.sqrt(square)
             qx, qy, qz, qw = qx * scale, qy * scale, qz * scale, qw * scale
         self._write_pose(x, y, z, qx, qy, qz, qw, vx, vy, wz)
@@ -196,7 +204,7 @@ class TrajectoryFollower:
         """Offer the measured tyre angle [rad]."""
         if not abs(angle) <= MAX_TURN:
             return _refusal_of(angle)
-        self._cells["steer"][0] = angle
+        self._steer[0] = angle
         self._missing.discard("steering")
         return _ACCEPTED
 
@@ -204,7 +212,7 @@ class TrajectoryFollower:
         """Offer the measured acceleration along body x [m/s^2]."""
         if not abs(ax) <= MAX_ACCELERATION:
             return _refusal_of(ax)
-        self._cells["ax"][0] = ax
+        self._ax[0] = ax
         self._missing.discard("acceleration")
         return _ACCEPTED
 
@@ -212,9 +220,9 @@ class TrajectoryFollower:
         """Offer the operation mode and whether Autoware's control is enabled."""
         if not 0 <= mode <= 255:
             return Refusal.OUT_OF_RANGE
-        self._cells["mode"][0] = mode
+        self._mode[0] = mode
         self._is_enabled = enabled
-        self._cells["enabled"][0] = enabled and self._is_allowed
+        self._enabled[0] = enabled and self._is_allowed
         self._missing.discard("operation mode")
         return _ACCEPTED
 
@@ -222,7 +230,7 @@ class TrajectoryFollower:
         """Say whether commands are followed; if not, the controllers run as in manual mode."""
         if allowed is not self._is_allowed:
             self._is_allowed = allowed
-            self._cells["enabled"][0] = self._is_enabled and allowed
+            self._enabled[0] = self._is_enabled and allowed
 
     def missing(self) -> tuple[str, ...]:
         """Names of the inputs that were never accepted, in the order of INPUT_NAMES."""
@@ -258,8 +266,7 @@ class TrajectoryFollower:
 
     def sync(self) -> None:
         """Hand each controller what the other needs in the next tick."""
-        lateral, longitudinal = self._convergence
-        longitudinal[0] = lateral[0]
+        self._was_converged[0] = self._is_converged[0]
 
     def step(self, now: float) -> bool:
         """Run one whole tick at ``now`` [s]; returns whether ``command`` is a new command."""

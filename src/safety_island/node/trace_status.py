@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
+from functools import cache
 from itertools import compress
 from typing import NamedTuple
 
-from safety_island.control.records import Records
+import numpy as np
+
+from safety_island.control.records import TRACE, Records
 from safety_island.control.status import ControllerLimit
 from safety_island.messages.fixed import reader
 from safety_island.messages.status import NO_VALUE
@@ -34,6 +37,12 @@ FLAGS = {
 """Bit of the status -> flag of TRACE."""
 
 
+@cache
+def _limits(flags: bytes) -> int:
+    """Return the bits of ControllerLimit; there are few combinations, told again and again."""
+    return sum(compress(map(int, FLAGS), flags))
+
+
 class Traced(NamedTuple):
     """What the trace says, in the words of the status."""
 
@@ -49,16 +58,14 @@ class TraceStatus:
 
     def __init__(self, trace: Records) -> None:
         self.last = Traced()
-        self._read = reader(trace, *COLUMNS.values(), *FLAGS.values())
-        self._bits = [int(bit) for bit in FLAGS]
+        self._read = reader(trace, *COLUMNS.values())
+        self._flags = trace.view(np.uint8).data[_FLAGS]
 
     def read(self) -> None:
         """Take what the controllers did in this tick."""
-        values = self._read()
-        flags = values[_FLAGS:]
-        limits = sum(compress(self._bits, flags)) if True in flags else 0
-        parts = values[:_SOLVER], values[_SOLVER:_STATES], values[_STATES:_FLAGS], limits
-        self.last = tuple.__new__(Traced, parts)
+        values, limits = self._read(), _limits(self._flags.tobytes())
+        parts = values[:_SOLVER], values[_SOLVER:_STATES], values[_STATES:]
+        self.last = tuple.__new__(Traced, (*parts, limits))
 
     def clear(self) -> None:
         """Note that the controllers did not run in this tick: no limit acted, the rest stays."""
@@ -68,5 +75,8 @@ class TraceStatus:
 
 _SOLVER = len(ERRORS)
 _STATES = _SOLVER + len(SOLVER)
-_FLAGS = _STATES + len(STATES)
 """Places in what is read."""
+
+_FIRST = TRACE.fields[next(iter(FLAGS.values()))][1]
+_FLAGS = slice(_FIRST, _FIRST + len(FLAGS))
+"""Where TRACE has the flags: they are neighbours there, in this order."""
