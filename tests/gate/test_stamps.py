@@ -8,7 +8,13 @@ import pytest
 
 from safety_island.gate.clock_search import SEARCH_SHARE
 from safety_island.gate.reason import SampleReason
-from safety_island.gate.stamps import BEGIN_ANEW_S, FORGET_RATE, STEP_TOLD_S, StampGate
+from safety_island.gate.stamps import (
+    BEGIN_ANEW_S,
+    FORGET_RATE,
+    STEP_TOLD_S,
+    USUAL_DELAY_SHARE,
+    StampGate,
+)
 from safety_island.messages.wire import Time
 
 OLDER, DELAYED = SampleReason.OLDER, SampleReason.DELAYED
@@ -39,7 +45,8 @@ def gate() -> StampGate:
 
 def test_the_numbers() -> None:
     assert (BEGIN_ANEW_S, FORGET_RATE, SEARCH_SHARE, STEP_TOLD_S) == (10.0, 0.001, 0.5, 1.0)
-    assert StampGate().limit_s == math.inf
+    assert (StampGate().limit_s, StampGate().usual_delay_s) == (math.inf, math.inf)
+    assert (USUAL_DELAY_SHARE, StampGate(0.5).usual_delay_s) == (0.5, 0.25)
     assert (StampGate(0.5).steps_back, StampGate(0.5).delay_s, StampGate(0.5).stamp_ns) == (0, 0, 0)
     assert StampGate(0.5).step_told_until == -math.inf
 
@@ -323,3 +330,73 @@ class TestBeginAnew:
         assert gate.delay_s == 0.0
         assert offer(gate, 100.125, 1000.5) is None
         assert offer(gate, 50.0, 1000.75) is OLDER
+
+
+class TestWhatIsUnusual:
+    """Step of the stamp, time since: the delay is the difference, but for what is forgotten."""
+
+    @pytest.mark.parametrize(
+        ("seconds", "now"),
+        [
+            (100.125, 1000.125),  # as it should be
+            (100.125, 1000.375),  # a delay of all but half the limit
+            (100.624, 1000.125),  # quicker by all but the limit
+            (110.0, 1010.0),  # after the longest pause
+        ],
+    )
+    def test_what_gives_no_reason_to_look_is_not_told(
+        self, gate: StampGate, seconds: float, now: float
+    ) -> None:
+        assert self.told(gate, stamp(seconds), now) == (None, 0)
+
+    @pytest.mark.parametrize(
+        ("seconds", "now", "reason"),
+        [
+            (100.125, 1000.376, None),  # delayed by more than half the limit
+            (100.627, 1000.125, None),  # too quick: the clock was set
+            (110.125, 1010.125, None),  # after a pause
+            (100.0, 1000.125, SampleReason.STAMP_STANDS_STILL),
+            (99.875, 1000.125, OLDER),
+            (100.125, 1000.75, DELAYED),
+        ],
+    )
+    def test_everything_else_is(
+        self, gate: StampGate, seconds: float, now: float, reason: SampleReason | None
+    ) -> None:
+        assert self.told(gate, stamp(seconds), now) == (reason, 1)
+
+    def test_so_is_what_is_no_time_and_what_comes_from_another(self, gate: StampGate) -> None:
+        assert self.told(gate, Time(100, 10**9), 1001.0) == (SampleReason.BAD_STAMP, 1)
+        assert self.told(gate, stamp(100.125), 1000.125, is_successor=True) == (None, 1)
+
+    def test_a_step_of_a_nanosecond_is_usual(self, gate: StampGate) -> None:
+        assert self.told(gate, Time(100, 1), 1000.125) == (None, 0)
+
+    def test_quicker_by_the_limit_itself_is_usual(self) -> None:
+        gate = StampGate(0.5 - 0.125 * (1.0 - FORGET_RATE))
+        offer(gate, 100.0, 1000.0)
+        assert self.told(gate, stamp(100.5), 1000.125) == (None, 0)
+
+    def test_half_the_limit_itself_is_usual(self) -> None:
+        gate = StampGate(2.0 * (0.375 * (1.0 - FORGET_RATE) - 0.125))
+        offer(gate, 100.0, 1000.0)
+        assert self.told(gate, stamp(100.125), 1000.375) == (None, 0)
+
+    @pytest.mark.parametrize(("now", "delay_s"), [(1000.375, 0.25), (1000.5, 0.375)])
+    def test_a_delay_is_held_all_the_same(
+        self, gate: StampGate, now: float, delay_s: float
+    ) -> None:
+        assert offer(gate, 100.125, now) is None
+        assert gate.delay_s == pytest.approx(delay_s, abs=1e-3)
+
+    def test_nobody_need_listen(self) -> None:
+        assert StampGate(0.5).judge(stamp(100.0), b"", 1000.0) is None
+
+    @staticmethod
+    def told(
+        gate: StampGate, at: Time, now: float, is_successor: bool = False
+    ) -> tuple[SampleReason | None, int]:
+        """What a sample is refused for, and how often it is told."""
+        calls: list[None] = []
+        gate.on_unusual = lambda: calls.append(None)
+        return gate.judge(at, b"other", now, is_successor), len(calls)

@@ -7,6 +7,7 @@ distance from the island's own clock tells that samples take longer than before.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 from safety_island.gate.clock_search import ClockSearch
 from safety_island.gate.reason import SampleReason
@@ -25,6 +26,13 @@ _STEPPED = -1.0
 STEP_TOLD_S = 1.0
 """Time [s] for which a step of the sender's clock is told."""
 
+USUAL_DELAY_SHARE = 0.5
+"""Share of the age limit up to which a delay is nothing to tell."""
+
+
+def _nobody() -> None:
+    """Whom an unusual sample is told when nobody asked for it."""
+
 
 class StampGate:
     """Judges each sample by its stamp; told the time [s, monotonic], reads no clock.
@@ -37,12 +45,16 @@ class StampGate:
     """
 
     def __init__(self, age_limit_s: float = math.inf) -> None:
+        self.on_unusual: Callable[[], None] = _nobody
+        """Told of each sample that gives reason to look at delay and clock; the others give none.
+        """
         self.steps_back = 0
         self.step_told_until = -math.inf
         """Time [s, monotonic] until which a step of the sender's clock, either way, is told."""
         self.stamp_ns = 0
         """Stamp of the sample that was judged last [ns]."""
         self.limit_s = age_limit_s
+        self.usual_delay_s = age_limit_s * USUAL_DELAY_SHARE
         self.forget()
 
     def forget(self) -> None:
@@ -65,10 +77,16 @@ class StampGate:
         self.stamp_ns = stamp_ns = sec * NANOSECONDS + nanosec
         step_ns, since_s = stamp_ns - self._held_ns, now - self._held_at
         delay_s = self.delay_s + since_s * _REMEMBERED - step_ns * 1e-9
-        is_usual = step_ns > 0 and -self.limit_s <= delay_s <= self.limit_s and not is_successor
-        if is_usual and since_s <= BEGIN_ANEW_S and nanosec < NANOSECONDS:
+        if (
+            step_ns > 0
+            and -self.limit_s <= delay_s <= self.usual_delay_s
+            and since_s <= BEGIN_ANEW_S
+            and nanosec < NANOSECONDS
+            and not is_successor
+        ):
             self._new_delay_s = delay_s if delay_s > 0.0 else 0.0
             return None
+        self.on_unusual()
         if stamp_ns <= 0 or nanosec >= NANOSECONDS:
             return SampleReason.BAD_STAMP
         if step_ns == 0:
@@ -89,6 +107,8 @@ class StampGate:
             return self._judge_misfit(late, now) if is_successor else late
         if delay_s < -self.limit_s:
             self._new_delay_s = _STEPPED
+        elif not is_successor:
+            self._new_delay_s = max(delay_s, 0.0)
         return None
 
     def _judge_misfit(self, reason: SampleReason, now: float) -> SampleReason | None:

@@ -7,17 +7,9 @@ from safety_island.gate.stamps import StampGate
 from safety_island.gate.warning import InputWarning
 from safety_island.gate.writers import Writers
 
-DELAY_SHARE = 0.5
-"""Share of the age limit from which on a delay is warned of."""
-
 _AGE, _RATE, _CLOCK = int(InputWarning.AGE), int(InputWarning.RATE), int(InputWarning.CLOCK)
 _DELAY, _SECOND = int(InputWarning.DELAY), int(InputWarning.SECOND_PUBLISHER)
 _CHANGED, _STEP = int(InputWarning.PUBLISHER_CHANGED), int(InputWarning.CLOCK_STEP)
-
-
-def longest_delay_s(age_limit_s: float) -> float:
-    """Return the delay [s] beyond which it is warned of."""
-    return age_limit_s * DELAY_SHARE
 
 
 def warnings(
@@ -32,7 +24,7 @@ def warnings(
         bits |= _RATE
     if is_off:
         bits |= _CLOCK
-    if stamps.delay_s > longest_delay_s(stamps.limit_s):
+    if stamps.delay_s > stamps.usual_delay_s:
         bits |= _DELAY
     if writers.others:
         bits |= _SECOND

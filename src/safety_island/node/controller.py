@@ -63,7 +63,7 @@ class ControllerNode(Node):
         self.parameters, self.mode = parameters, mode
         self.follower = follower
         self.controllers = Controllers(follower, self.clock, self.logger)
-        self.inputs = InputSet(transport, follower, self.logger, parameters.gate)
+        self.inputs = InputSet(transport, follower, self.clock, self.logger, parameters.gate)
         self.identity = Identity(transport, self.inputs, self.logger, parameters, joined_at)
         self._period_s = period_s = parameters.node.ctrl_period
         timeout_s = parameters.node.timeout_thr_sec
@@ -123,7 +123,7 @@ class ControllerNode(Node):
             outcome, detail = Outcome.FAULT, describe(error)
             self.logger.error("the tick failed: %s", detail, throttled=True)
             self._fail(now)
-        self.inputs.warn(now, self.clock.wall_ns())
+        self.inputs.warn(now)
         if self.sender.command is None:
             self.sender.withdraw()
         self._ticks += 1

@@ -95,12 +95,11 @@ class Input:
         samples = self.subscription.take_all()
         if not samples:
             return 0
-        refused = 0
-        if len(samples) > 1 or self.writers.others:
-            samples, refused = self._select(samples)
+        if len(samples) == 1 and not self.writers.others:
+            return 0 if self._accept(samples[0], now, since) else 1
+        samples, refused = self._select(samples)
         for sample in samples:
-            if self._accept(sample, now):
-                self.accepted_at = since
+            if self._accept(sample, now, since):
                 break
             refused += 1
         return refused
@@ -130,8 +129,8 @@ class Input:
         sample, self._other = self._other, None
         self.stamps.forget()  # the next one may have another clock, or tell the same again
         lives = sample is not None and sample.writer_guid in self.writers.alive
-        if sample is not None and lives and self._accept(sample, now):
-            self.accepted_at = now
+        if sample is not None and lives:
+            self._accept(sample, now, now)
 
     def watch(self, now: float, wall_ns: int) -> None:
         """Look at what changes slowly: how often it comes, and by which clock."""
@@ -145,8 +144,11 @@ class Input:
         self.subscription.take_all()
         self.accepted_at = -math.inf
 
-    def _accept(self, sample: Sample, now: float) -> bool:
-        """Pass a sample through the gate to the controllers; whether it got there."""
+    def _accept(self, sample: Sample, now: float, since: float) -> bool:
+        """Pass a sample through the gate to the controllers; whether it got there.
+
+        It was received after ``since`` [s].
+        """
         data, _, guid = sample
         self.taken, self.writer_guid = sample, guid
         stamps = self.stamps
@@ -169,7 +171,7 @@ class Input:
         except Exception as error:  # a fault of ours must not let one topic stop the ticks
             return self._refuse(SampleReason.FAULT, describe(error))
         stamps.hold(data, now)
-        self.source_guid, self.message = guid, message
+        self.source_guid, self.message, self.accepted_at = guid, message, since
         self.accepted += 1
         self.refused_in_a_row = 0
         return True

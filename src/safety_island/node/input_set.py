@@ -16,7 +16,7 @@ from safety_island.node.input import Input
 from safety_island.node.input_warnings import InputWarnings
 from safety_island.node.inputs import INPUTS
 from safety_island.node.transport import Transport
-from safety_island.platform.interfaces import Logger
+from safety_island.platform.interfaces import Clock, Logger
 
 ODOMETRY = 1
 STEERING = 2
@@ -43,7 +43,12 @@ class InputSet:
     """The inputs of a node. Times in s, monotonic."""
 
     def __init__(
-        self, transport: Transport, follower: InputFollower, logger: Logger, params: GateParams
+        self,
+        transport: Transport,
+        follower: InputFollower,
+        clock: Clock,
+        logger: Logger,
+        params: GateParams,
     ) -> None:
         self.items = tuple(
             Input(
@@ -61,7 +66,7 @@ class InputSet:
         self._transport = transport
         self._logger = logger
         self._keeps_first = params.second_publisher == "keep_first"
-        self._watch = InputWarnings(self.items, params, logger)
+        self._watch = InputWarnings(self.items, params, clock, logger)
         self.ages_s = [math.inf] * len(self.items)
         """Age of each, as of the last ``measure``."""
         self.disengaged = Reason.WAITING_FOR_INPUT
@@ -71,6 +76,9 @@ class InputSet:
         self._unsettled_until = -math.inf
         self._has_others = False
         self._age_limits = [item.age_limit_s for item in self.items]
+        self._usual_ages = [min(item.age_limit_s, item.age_warning_s) for item in self.items]
+        self._are_fresh = False
+        """Whether no age is near its limit, as of the last ``measure``."""
 
     def discover(self, now: float) -> None:
         """Look which publishers live; to be called when some came or went."""
@@ -95,7 +103,8 @@ class InputSet:
 
     def measure(self, now: float) -> None:
         """Take the age of each."""
-        self.ages_s = [now - item.accepted_at for item in self.items]
+        self.ages_s = ages_s = [now - item.accepted_at for item in self.items]
+        self._are_fresh = not any(map(gt, ages_s, self._usual_ages))
 
     def drop(self) -> None:
         """Drop what has waited while the process stood still; the operation mode stays."""
@@ -111,9 +120,7 @@ class InputSet:
             return found
         if not self._keeps_first and (found := self._shared()):
             return found
-        if any(map(gt, self.ages_s, self._age_limits)):
-            return self._stale()
-        return NOT_BLOCKED
+        return NOT_BLOCKED if self._are_fresh else self._stale()
 
     def _missing(self) -> Blocked | None:
         for index, item in enumerate(self.items):
@@ -135,19 +142,21 @@ class InputSet:
         return None
 
     def _stale(self) -> Blocked:
-        limited = list(map(gt, self.ages_s, self._age_limits))[:OPERATION_MODE]
-        if all(limited):
+        too_old = list(map(gt, self.ages_s, self._age_limits))
+        if True not in too_old:
+            return NOT_BLOCKED
+        if all(too_old[:OPERATION_MODE]):
             return Blocked(Reason.PARTITION)
-        return Blocked(Reason.INPUT_STALE, limited.index(True))
+        return Blocked(Reason.INPUT_STALE, too_old.index(True))
 
     def missing(self) -> list[str]:
         """Name the inputs of which no sample was ever accepted."""
         return [item.name for item in self.items if not item.accepted]
 
-    def warn(self, now: float, wall_ns: int) -> None:
+    def warn(self, now: float) -> None:
         """Look which warnings stand, and log those that are new."""
-        is_settled = now > self._unsettled_until and not self._has_others
-        self._watch.update(now, wall_ns, self.ages_s, is_settled)
+        is_calm = self._are_fresh and now > self._unsettled_until and not self._has_others
+        self._watch.update(now, self.ages_s, is_calm)
 
     @property
     def warnings(self) -> list[int]:
