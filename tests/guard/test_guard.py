@@ -135,6 +135,41 @@ def test_the_angle_moves_from_command_to_command(sign: float) -> None:
     decided(stream.send(0.9 * sign), Verdict.PASSED)
 
 
+@pytest.mark.parametrize("judged", [0.3, 0.9])
+def test_what_was_not_sent_is_no_predecessor(judged: float) -> None:
+    """Neither one that passed nor one that was clamped; what was sent before it is."""
+    stream = Stream(steering_rate=1.0)
+    stream.send(0.25)
+    stream.send(judged, wait=0.05)
+    stream.guard.take_back()
+    found = decided(stream.send(0.9, wait=0.05), Verdict.CLAMPED, Limit.RATE)
+    assert found.steering_tire_angle == pytest.approx(0.35)
+
+
+def test_to_take_back_the_first_command_leaves_none() -> None:
+    stream = Stream(steering_rate=1.0)
+    stream.send(0.25)
+    stream.guard.take_back()
+    decided(stream.send(0.9), Verdict.PASSED)
+
+
+def test_to_take_back_what_was_refused_changes_nothing() -> None:
+    stream = Stream(steering_rate=1.0)
+    stream.send(0.1)
+    stream.send(0.15)
+    refused(stream.guard, COMMAND._replace(now=nan), Limit.NOT_FINITE)
+    stream.guard.take_back()
+    found = decided(stream.send(0.9), Verdict.CLAMPED, Limit.RATE)
+    assert found.steering_tire_angle == pytest.approx(0.25)
+
+
+def test_the_number_of_what_was_taken_back_stays_used() -> None:
+    guard = fresh()
+    guard.check(COMMAND, 0.0, 0.0)
+    guard.take_back()
+    refused(guard, COMMAND, Limit.SEQUENCE)
+
+
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_the_distance_from_the_measured_angle(sign: float) -> None:
     stream = Stream(steering_distance=0.3)

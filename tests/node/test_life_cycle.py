@@ -8,6 +8,8 @@ import pytest
 
 from safety_island.can.mode import OutputMode
 from safety_island.control.status import Mode, MpcStatus
+from safety_island.guard import Limit
+from safety_island.life_cycle.ramp import Motion
 from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State
 from safety_island.messages.outputs import Control
@@ -111,6 +113,24 @@ class TestCanOnly:
             (0.0625, 0.6625, -1.125),
             (0.0625, 0.4375, -1.5),
         ]
+
+    @pytest.mark.parametrize("input_is_back", [False, True])
+    def test_the_guard_holds_them_against_each_other(
+        self, follower: FakeFollower, monkeypatch: pytest.MonkeyPatch, input_is_back: bool
+    ) -> None:
+        """Not against what the controllers ask for, which is not sent."""
+        rig, can = can_only(follower)
+        for _ in range(5):
+            tick(rig, stale=True)
+        (before, _), jump = can.sent[-1], Motion(0.5, 0.0, 0.8, -0.75)
+        monkeypatch.setattr(rig.node.life_cycle, "motion", lambda: jump)
+        report = tick(rig, stale=not input_is_back)
+        assert report.outcome is Outcome.SUBSTITUTED
+        assert rig.node.check.limits & Limit.RATE
+        now, _ = can.sent[-1]
+        rate = rig.node.parameters.guard.steering_rate[0]
+        step = now.steering_tire_angle - before.steering_tire_angle
+        assert step == pytest.approx(rate * T, rel=0.05)  # a little less at 1 m/s
 
     def test_a_driver_who_takes_over_ends_the_ramp(self, follower: FakeFollower) -> None:
         rig, _ = can_only(follower)

@@ -67,6 +67,8 @@ change of that with the angle, at one speed.
   what is left of the tyre's way; it never grows and never turns round.
 - **No predecessor.** The first command, and the first after a silence, has none: what compares
   two commands is left out. The number must rise all the same.
+- **What was not sent** is no predecessor either: while a stop goes on, its commands are compared
+  with each other, whatever the controllers ask for meanwhile.
 - **Time.** The time between two commands counts as `guard.shortest_step` when they come closer,
   down to half of it (a tick after a late one comes early), and below that as twice itself, so
   that many commands at once gain nothing; it counts as `guard.longest_step` at most.

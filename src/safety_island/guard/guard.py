@@ -47,6 +47,8 @@ class Guard:
         self._wheel_base, self._timeout = wheel_base, timeout_s
         self._keeps_all = Shortcut(self._table, self._fastest, wheel_base).keeps_all
         self._sent: Sent | None = None
+        self._before: Sent | None = None
+        """What ``_sent`` was before the last check."""
         self._sequence: float = -inf
 
     def check(
@@ -57,11 +59,12 @@ class Guard:
         ``speed`` [m/s] and ``steering`` [rad] are measured. While nobody follows the commands
         (``engaged`` False) their distance from the measured steering says nothing, and is let be.
         """
+        self._before = sent = self._sent
         refusal = self._refusal(proposal, speed, steering)
         if refusal:
             return Decision(_REFUSED, refusal, nan, nan, nan, nan)
         now, _, self._sequence, angle, rotation, velocity, push = proposal
-        sent, step, slope = self._sent, self._step(now), tan(angle)
+        step, slope = self._step(now), tan(angle)
         if sent is not None and self._keeps_all(proposal, slope, sent, speed, steering, step):
             self._sent = now, angle, slope, push
             # Decision's own constructor takes twice as long
@@ -89,6 +92,10 @@ class Guard:
         self._sent = now, angle, tan(angle), push
         bits |= turned | driven | pushed
         return Decision(_CLAMPED if bits else _PASSED, bits, angle, rotation, velocity, push)
+
+    def take_back(self) -> None:
+        """Undo the last check, for its command was not sent; its number stays used."""
+        self._sent = self._before
 
     def forget(self) -> None:
         """Let the next command have no predecessor, as after a silence; its number must rise."""

@@ -56,6 +56,10 @@ class CommandCheck:
             return self._clamp(command, decision[2:])
         return self._refuse(command, now - self._timeout_s)
 
+    def take_back(self) -> None:
+        """Note that the last command was not sent: its predecessor is that of the next one."""
+        self._guard.take_back()
+
     def forget(self) -> None:
         """Note that nothing was sent: the next command has no predecessor."""
         self._guard.forget()

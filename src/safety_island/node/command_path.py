@@ -54,7 +54,7 @@ class CommandPath:
             return sent
         if (substituted := self._life_cycle.motion()) is not None:
             if checked.command is not None:
-                self._guard.forget()  # what was not sent is nothing to measure a change against
+                self._guard.take_back()
             return self._substitute(substituted, now)
         self._guard.forget()
         if life.state in _SENDS:
