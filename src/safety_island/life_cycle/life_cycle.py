@@ -13,7 +13,8 @@ from safety_island.life_cycle.stop import Stop
 from safety_island.life_cycle.transition import Conditions, Life, next_life
 
 _QUIET = (Reason.NONE, Reason.NONE)
-_CONTROLS = frozenset({State.INIT, State.READY, State.ACTIVE, State.HOLD})
+_ACTIVE = State.ACTIVE
+_CONTROLS = (_ACTIVE, State.READY, State.INIT, State.HOLD)
 
 
 class LifeCycle:
@@ -67,7 +68,7 @@ class LifeCycle:
     def judge(self, facts: Facts, now: float) -> Life:
         """Take the facts of a tick; return the state that decides what it sends."""
         self._speed = facts.speed
-        is_active = self.life.state is State.ACTIVE
+        is_active = self.life.state is _ACTIVE
         if is_active and facts[:2] == _QUIET and self._failures.are_none(facts):
             return self.life  # the usual case, in which nothing can change
         if facts.disengaged is Reason.NOT_AUTONOMOUS:

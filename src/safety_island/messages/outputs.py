@@ -44,25 +44,27 @@ def encode_control(command: Control) -> bytes:
     Raises OverflowError for a finite value beyond float32 and struct.error for a stamp beyond its
     integers; NaN and infinity are encoded.
     """
+    stamp, other, angle, rate, velocity, acceleration, jerk, *flags, lateral = command
+    has_rate, has_acceleration, has_jerk = flags
     return _CONTROL.pack(
         HEADER_LE,
-        *command.stamp,
+        *stamp,
         0,
         0,
-        *(command.lateral_stamp or command.stamp),
+        *(lateral or stamp),
         0,
         0,
-        command.steering_tire_angle,
-        command.steering_tire_rotation_rate,
-        command.is_defined_steering_tire_rotation_rate,
-        *command.longitudinal_stamp,
+        angle,
+        rate,
+        has_rate,
+        *other,
         0,
         0,
-        command.velocity,
-        command.acceleration,
-        command.jerk,
-        command.is_defined_acceleration,
-        command.is_defined_jerk,
+        velocity,
+        acceleration,
+        jerk,
+        has_acceleration,
+        has_jerk,
     )
 
 

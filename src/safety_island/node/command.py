@@ -35,10 +35,11 @@ class Computed(NamedTuple):
 
         The acceleration is always defined (the firmware leaves that flag unset), the jerk never.
         """
-        stamp, longitudinal_stamp, *values, has_rate = self
+        stamp, longitudinal_stamp, angle, rate, velocity, acceleration, has_rate = self
         own = to_time(stamp, wall_offset_ns)
         other = own if longitudinal_stamp == stamp else to_time(longitudinal_stamp, wall_offset_ns)
-        message = (own, other, *values, 0.0, has_rate, True, False, None)
+        flags = (has_rate, True, False)
+        message = (own, other, angle, rate, velocity, acceleration, 0.0, *flags, None)
         return tuple.__new__(Control, message)  # its own constructor takes twice as long
 
 
@@ -49,4 +50,4 @@ def substitute(motion: Motion, now: float) -> Computed:
 
 def to_time(monotonic_s: float, wall_offset_ns: int) -> Time:
     """Return the wall-clock stamp of a time on the monotonic clock [s]."""
-    return Time(*divmod(int(monotonic_s * 1e9) + wall_offset_ns, NANOSECONDS))
+    return tuple.__new__(Time, divmod(int(monotonic_s * 1e9) + wall_offset_ns, NANOSECONDS))

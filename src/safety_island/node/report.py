@@ -35,6 +35,9 @@ class Outcome(IntEnum):
     """The last command or one of the stop ramp went out in place of the controllers'."""
 
 
+_PUBLISHED, _SUBSTITUTED = Outcome.PUBLISHED, Outcome.SUBSTITUTED
+
+
 class TickReport(NamedTuple):
     """One tick. Times in seconds; ages run from the acceptance of an input, inf when never."""
 
@@ -67,15 +70,13 @@ class TickReport(NamedTuple):
     @property
     def sent(self) -> bool:
         """Whether any command went out, be it the controllers' or one in their place."""
-        return self.outcome in _SENT
+        outcome = self.outcome
+        return outcome is _PUBLISHED or outcome is _SUBSTITUTED
 
     @property
     def published(self) -> bool:
         """Whether the command of this tick went out."""
-        return self.outcome is Outcome.PUBLISHED
-
-
-_SENT = frozenset({Outcome.PUBLISHED, Outcome.SUBSTITUTED})
+        return self.outcome is _PUBLISHED
 
 
 def describe(error: Exception) -> str:
