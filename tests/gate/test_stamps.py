@@ -312,6 +312,28 @@ class TestStep:
         assert (gate.steps_back, gate.step_told_until) == (1, 1003.0)
 
 
+class TestSentOnChange:
+    """Without an age limit nothing says the same again: what is new must be heard."""
+
+    @pytest.fixture
+    def told(self) -> StampGate:
+        gate = StampGate()
+        offer(gate, 100.0, 1000.0, b"autonomous")
+        return gate
+
+    @pytest.mark.parametrize("is_successor", [False, True])
+    def test_another_message_with_the_same_stamp_is_taken(
+        self, told: StampGate, is_successor: bool
+    ) -> None:
+        assert told.judge(stamp(100.0), b"stop", 1000.125, is_successor) is None
+        told.hold(b"stop", 1000.125)
+        assert (told.steps_back, told.step_told_until) == (0, -math.inf)
+        assert offer(told, 100.0, 1000.25, b"autonomous") is None
+
+    def test_the_same_bytes_are_not(self, told: StampGate) -> None:
+        assert offer(told, 100.0, 1000.125, b"autonomous") is SampleReason.DUPLICATE
+
+
 class TestBeginAnew:
     def test_after_a_pause_any_stamp_is_taken(self, gate: StampGate) -> None:
         offer(gate, 100.125, 1000.375)

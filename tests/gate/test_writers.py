@@ -50,7 +50,13 @@ class TestOwner:
         writers = known(A)
         assert bytes(16) == UNKNOWN
         assert writers.takes(UNKNOWN) and writers.owner == b""
-        assert writers.takes(A) and writers.takes(UNKNOWN) and writers.owner == A
+        assert writers.takes(A) and writers.owner == A
+
+    def test_it_is_not_taken_while_an_owner_lives(self) -> None:
+        writers = known(A)
+        assert writers.takes(A) and not writers.takes(UNKNOWN)
+        writers.update(NOBODY, 1.0)
+        assert writers.takes(UNKNOWN) and writers.owner == b""
 
     def test_a_late_sample_of_one_that_has_gone_shuts_nobody_out(self) -> None:
         writers = known(A)

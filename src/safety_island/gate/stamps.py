@@ -55,6 +55,7 @@ class StampGate:
         """Stamp of the sample that was judged last [ns]."""
         self.limit_s = age_limit_s
         self.usual_delay_s = age_limit_s * USUAL_DELAY_SHARE
+        self._is_sent_on_change = age_limit_s == math.inf  # refused, it would not be told again
         self.forget()
 
     def forget(self) -> None:
@@ -89,9 +90,10 @@ class StampGate:
         self.on_unusual()
         if stamp_ns <= 0 or nanosec >= NANOSECONDS:
             return SampleReason.BAD_STAMP
-        if step_ns == 0:
-            same = data == self._held
-            return SampleReason.DUPLICATE if same else SampleReason.STAMP_STANDS_STILL
+        if step_ns == 0 and data == self._held:
+            return SampleReason.DUPLICATE
+        if step_ns == 0 and not self._is_sent_on_change:
+            return SampleReason.STAMP_STANDS_STILL
         return self._judge_unusual(step_ns, delay_s, now, is_successor)
 
     def _judge_unusual(
@@ -112,8 +114,8 @@ class StampGate:
         return None
 
     def _judge_misfit(self, reason: SampleReason, now: float) -> SampleReason | None:
-        is_sent_on_change = self.limit_s == math.inf  # refused, it would not be told again
-        if not is_sent_on_change and not self._search.finds(self.stamp_ns, now, self._held_at):
+        is_found = self._is_sent_on_change or self._search.finds(self.stamp_ns, now, self._held_at)
+        if not is_found:
             return reason
         self._new_delay_s = _STEPPED
         return None

@@ -39,12 +39,16 @@ class Writers:
         self.others = min(len(alive) - bool(alive), MOST_OTHERS)
 
     def takes(self, guid: bytes) -> bool:
-        """Whether a sample of this publisher is taken; the first one becomes the owner."""
-        if guid == self.owner or guid == UNKNOWN:
+        """Whether a sample of this publisher is taken; the first one becomes the owner.
+
+        One that is gone already owns nothing, and is not taken while an owner lives.
+        """
+        if guid == self.owner:
             return True
         if self.owner in self.alive:
             return False
-        self.owner = guid
+        if guid != UNKNOWN:
+            self.owner = guid
         return True
 
     def changed(self, now: float) -> bool:
