@@ -27,6 +27,16 @@ The campaign runs on virtual time, at periods of 150 ms and 30 ms where both hav
     ./island test tests/faults -k row_09            # one row
     FAULTS_SEED=7 ./island test tests/faults        # other phases, losses and bits
 
+What is decided, where another reaction could be expected:
+
+- 35: a stamp from the far future may be that of a clock that was set. It is taken, and warned of
+  (`CLOCK`, `CLOCK_STEP`).
+- 37: after a sleep nobody knows where the vehicle is, so there is no ramp, with `CAN_ONLY` neither;
+  after a process stood still there is.
+- 39: no clock stops a solver. Its iterations are bounded, and a command that is older than
+  `timeout_thr_sec` when it would be sent is not sent.
+- 77: when autonomous mode is left the PID's integrator pauses; it is not reset, as in the firmware.
+
 | row | fault | reaction | bound | tests |
 |---|---|---|---|---|
 """

@@ -27,6 +27,8 @@ PLACES: dict[str, Callable[[Scene], tuple[Any, str]]] = {
     "check": lambda scene: (scene.node._path, "check"),
     "life_cycle.judge": lambda scene: (scene.node.life_cycle, "judge"),
     "life_cycle.overrun": lambda scene: (scene.node.life_cycle.overrun, "tick"),
+    "life_cycle.begin": lambda scene: (scene.node.life_cycle, "begin"),
+    "arming": lambda scene: (scene.node.arming, "take"),
     "processing time": lambda scene: (scene.node._times, "send"),
     "send": lambda scene: (scene.node._path, "send"),
 }
@@ -85,3 +87,31 @@ def test_row_51_an_exception_over_a_sample_refuses_that_sample(key: str, name: s
     scene.run(0.6)
     stays_latched(scene, Reason.INPUT_STALE)
     rearms(scene)
+
+
+ASIDE: dict[str, Callable[[Scene], tuple[Any, str]]] = {
+    "warnings": lambda scene: (scene.node.inputs, "warn"),
+    "rates": lambda scene: (scene.input("odometry").rate, "look"),
+    "status": lambda scene: (scene.node.status, "_encode"),
+}
+
+
+@pytest.mark.parametrize("place", ASIDE)
+def test_row_51_an_exception_in_what_only_tells_costs_no_command(
+    place: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scene = Scene().drive()
+    monkeypatch.setattr(*ASIDE[place](scene), fail_with(ZeroDivisionError("on purpose")))
+    stays_active(scene, 2.0)
+    assert "on purpose" in scene.log_text
+
+
+def test_row_51_silence_goes_on_though_nothing_can_be_taken_back(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    scene = Scene().drive()
+    monkeypatch.setattr(scene.node.sender, "withdraw", fail_with(ZeroDivisionError("on purpose")))
+    monkeypatch.setattr(scene.node.inputs, "take", fail_with(ZeroDivisionError("on purpose")))
+    rows = scene.run(2.0)
+    assert (rows[-1].state, rows[-1].output) == (State.SILENT, "silent")
+    assert "the end of a tick failed" in scene.log_text

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from safety_island.dds import topics
 from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State
 from safety_island.node.memory import MemoryDomain
@@ -50,6 +51,50 @@ def test_row_71_the_newcomer_goes_on_when_the_first_has_left() -> None:
     report = newcomer.tick()
     assert (report.life.state, report.published) == (State.SILENT, False)
     assert report.life.reason is Reason.RESTARTED_WHILE_MOVING
+
+
+def test_row_71_neither_after_autonomous_mode_was_engaged_anew() -> None:
+    """That was meant for the first one."""
+    scene = Scene(domain=DiscoveredDomain).drive()
+    newcomer = scene.new_node()
+    for engages in (True, False, True):
+        scene.world._engage = engages
+        if not engages:
+            scene.disengage()
+        for _ in range(10):
+            scene.tick()
+            newcomer.tick()
+        assert newcomer.inputs.disengaged is (Reason.NONE if engages else Reason.NOT_AUTONOMOUS)
+    assert scene.node.life_cycle.state is State.ACTIVE
+    scene.node.sender.outputs[0]._publisher.close()  # type: ignore[attr-defined]
+    assert scene.world.plant.speed > 1.0
+    scene.idle(SLOW)
+    assert newcomer.tick().life.reason is Reason.RESTARTED_WHILE_MOVING
+
+
+def test_row_73_publishers_of_the_command_that_flap_end_the_output() -> None:
+    scene = Scene().drive()
+    entry = topics.CONTROL
+    for _ in range(scene.parameters.gate.writer_changes + 1):
+        scene.domain.publisher(entry.name, entry.type_name, entry.qos).close()
+        scene.tick()
+        publisher = scene.domain.publisher(entry.name, entry.type_name, entry.qos)
+        scene.tick()
+        publisher.close()
+    first = next(row for row in scene.rows if row.state is State.SILENT)
+    assert first.reason is Reason.WRITER_FLAPPING
+    scene.run(1.5)
+    stays_latched(scene, Reason.WRITER_FLAPPING)
+    rearms(scene)
+
+
+def test_row_73_one_that_comes_and_goes_is_none_of_that() -> None:
+    scene = Scene().drive()
+    entry = topics.CONTROL
+    publisher = scene.domain.publisher(entry.name, entry.type_name, entry.qos)
+    stays_active(scene, 1.0)
+    publisher.close()
+    stays_active(scene, 1.0)
 
 
 def test_row_71_nobody_sends_before_it_has_looked_around() -> None:

@@ -35,6 +35,15 @@ class TestStart:
         assert island.tick(disengaged=MANUAL) == Life(State.READY, MANUAL)
         assert island.tick() == WELL
 
+    @pytest.mark.parametrize("mode", [MANUAL, Reason.NONE])
+    def test_not_while_another_island_drives(self, mode: Reason) -> None:
+        """Who leaves autonomous mode means that one; also when this one was ready before."""
+        island, other = Island(), Reason.SECOND_ISLAND
+        assert island.tick(disengaged=MANUAL).state is State.READY
+        assert island.tick(other, mode) == Life(State.INIT, other)
+        assert island.tick(other) == Life(State.INIT, other)
+        assert island.tick() == silent(RESTARTED)
+
     def test_a_mode_that_nobody_tells_does_not(self) -> None:
         island = Island()
         assert island.tick(disengaged=GONE) == Life(State.READY, GONE)

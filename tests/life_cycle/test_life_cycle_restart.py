@@ -54,6 +54,37 @@ class TestStall:
         assert island.begin(1.0)
         assert island.tick(speed=0.0) == silent(Reason.LATCHED, Reason.OVERRUN)
 
+    @pytest.mark.parametrize("ticks", [0, 1, 4], ids=["ACTIVE", "HOLD", "STOP"])
+    def test_a_vehicle_that_nobody_else_brakes_is_stopped(self, ticks: int) -> None:
+        """From what was sent before, as in any other tick; then silence."""
+        island = Island(has_ramp=True).engage()
+        for _ in range(ticks):
+            island.tick(STALE)
+            island.life_cycle.motion()
+        assert island.begin(1.0)
+        assert island.life == Life(State.STOP, Reason.STALLED, Reason.STALLED)
+        motion = island.life_cycle.motion()
+        assert motion is not None
+        assert motion.acceleration == (-2.0 if ticks == 4 else -1.0)
+        for _ in range(60):
+            life = island.tick()
+            island.life_cycle.motion()
+        assert life == silent(Reason.STALLED)
+
+    @pytest.mark.parametrize(("slept_s", "state"), [(0.625, "STOP"), (0.6251, "INIT")])
+    def test_after_a_sleep_it_is_not(self, slept_s: float, state: str) -> None:
+        island = Island(has_ramp=True).engage()
+        island.slept_s = slept_s
+        assert island.begin(0.6251)
+        assert island.life == Life(State[state], Reason.STALLED, island.life.cause)
+        assert (island.life_cycle.motion() is None) is (state == "INIT")
+
+    def test_neither_is_one_that_somebody_else_drives(self) -> None:
+        island = Island(has_ramp=True)
+        assert island.tick(disengaged=MANUAL).state is State.READY
+        assert island.begin(1.0)
+        assert island.life == STALLED
+
     @pytest.mark.parametrize("fact", ["failed", "refused", "unsolved", "sent"])
     def test_what_went_wrong_before_is_forgotten(self, fact: str) -> None:
         island = Island().engage()

@@ -8,7 +8,7 @@ from safety_island.life_cycle.ramp import Motion
 from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State
 from safety_island.life_cycle.transition import Life
-from tests.life_cycle.rig import GONE, HELD, MANUAL, STALE, WELL, Island
+from tests.life_cycle.rig import GONE, HELD, MANUAL, STALE, WELL, Island, T
 
 
 def island(**changes: float) -> Island:
@@ -101,3 +101,20 @@ def test_before_any_command_went_out_nothing_is_held() -> None:
     stopping.went_out = False
     stopping.engage()
     assert step(stopping) == ("HOLD", Motion(0.0, 0.0, 0.0, 0.0))
+
+
+def test_ticks_that_were_missed_make_neither_hold_nor_ramp_longer() -> None:
+    """Every second tick: half as many commands, each a step of twice the time."""
+    stopping = island()
+    stopping.now += T
+    assert step(stopping) == ("HOLD", HELD)
+    stopping.now += T
+    assert step(stopping) == ("STOP", Motion(0.25, 0.0, 1.625, -1.5))
+    stopping.now += T
+    assert step(stopping) == ("STOP", Motion(0.25, 0.0, 1.125, -2.0))
+
+
+def test_a_tick_that_comes_early_is_half_a_period_at_least() -> None:
+    stopping = island(hold_ticks=0)
+    stopping.now -= 0.75 * T
+    assert step(stopping) == ("STOP", Motion(0.25, 0.0, 2.0 - 0.75 * 0.0625, -0.75))

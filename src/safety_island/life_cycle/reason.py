@@ -74,7 +74,7 @@ EXPLANATIONS: dict[Reason, Explanation] = {
         "look at the bridge and the network between main compute and island",
     ),
     Reason.WRITER_FLAPPING: Explanation(
-        "the publisher of {subject} has changed too often within a second",
+        "publishers of {subject} have come and gone too often within a second",
         "find the publisher that restarts again and again, or the several that take turns",
     ),
     Reason.SECOND_PUBLISHER: Explanation(

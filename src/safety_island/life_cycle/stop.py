@@ -33,9 +33,9 @@ class Stop:
         elif state not in (State.HOLD, State.STOP):
             self._holds, self._ramp = 0, None
 
-    def motion(self, state: State) -> Motion | None:
-        """Return the command of this tick, None in a state that has none of its own."""
+    def motion(self, state: State, step_s: float) -> Motion | None:
+        """Return the command ``step_s`` [s] after the last, None in a state that has none."""
         if state is State.HOLD:
-            self._holds += 1
+            self._holds += max(round(step_s / self._period_s), 1)  # ticks that were missed, too
             return self.last_sent._replace(rate=0.0)
-        return None if self._ramp is None else self._ramp.step(self._period_s)
+        return None if self._ramp is None else self._ramp.step(step_s)

@@ -20,11 +20,11 @@ class ArmResult(IntEnum):
     NONE = 0
     """No request came."""
     ARMED = 1
-    """The island left SILENT."""
+    """The island was armed, or left SILENT."""
     REFUSED = 2
-    """What made it SILENT still stands: see the reason."""
+    """A cause still stands, or a stop goes on: see the reason."""
     NOT_NEEDED = 3
-    """It was not SILENT."""
+    """Nothing kept the island from sending commands."""
 
 
 class Arm(NamedTuple):

@@ -36,7 +36,7 @@ class Arming:
 
     def answer(self, before: State, after: State) -> None:
         """Note what became of a request, by the states before and after the tick."""
-        if before in _SENDS:
+        if before in _SENDS or (before is State.INIT and after is State.READY):
             self.result = ArmResult.NOT_NEEDED
         else:
             self.result = ArmResult.ARMED if after in _SENDS else ArmResult.REFUSED

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from safety_island.guard import Guard, Limit, Proposal, Verdict
 from safety_island.life_cycle.reason import Reason
+from safety_island.messages.status import NO_VALUE
 from safety_island.node.command import Computed
 from safety_island.node.report import Outcome
 from safety_island.platform.interfaces import Logger
@@ -27,18 +28,22 @@ _NONE, _PUBLISHED = Reason.NONE, Outcome.PUBLISHED
 class CommandCheck:
     """Asks the guard about every command; counts and logs what it clamps and refuses.
 
-    ``verdict`` and ``limits`` are those of the last command.
+    ``verdict`` and ``limits`` are those of the last command in this tick; NO_VALUE and 0 without.
     """
 
     def __init__(self, guard: Guard, timeout_s: float, logger: Logger) -> None:
         self.clamped = 0
         self.refused = 0
         self.sequence = 0
-        self.verdict = Verdict.PASSED
-        self.limits = 0
+        self.skip()
         self._guard = guard
         self._timeout_s = timeout_s
         self._logger = logger
+
+    def skip(self) -> None:
+        """Note a tick in which the guard is asked about no command."""
+        self.verdict: int = NO_VALUE
+        self.limits = 0
 
     def check(
         self, command: Computed, now: float, speed: float, steering: float, engaged: bool

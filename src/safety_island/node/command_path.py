@@ -40,6 +40,7 @@ class CommandPath:
     def check(self, ran: Ran, now: float, engaged: bool) -> Checked:
         """Ask the guard about what the controllers computed."""
         if ran.command is None:
+            self._guard.skip()
             return Checked(None, outcome=Outcome.FAULT, detail=ran.fault)
         speed, steering = self._inputs.speed(), self._inputs.steering()
         return self._guard.check(ran.command, now, speed, steering, engaged)
@@ -56,9 +57,9 @@ class CommandPath:
             if checked.command is not None:
                 self._guard.take_back()
             return self._substitute(substituted, now)
-        self._guard.forget()
-        if life.state in _SENDS:
+        if life.state in _SENDS:  # a single tick; the next command has the same predecessor
             return checked.outcome, checked.detail
+        self._guard.forget()
         return _OUTCOMES.get(life.reason, Outcome.FORBIDDEN), self._detail(life.reason)
 
     def carry_on(self, now: float) -> None:

@@ -79,8 +79,9 @@ class ControllerNode(Node):
         self.observers: list[Callable[[TickReport], None]] = []
         """Told of each tick of ``run`` after its end; they take their time from the same thread."""
         time_topics = (topics.LATERAL_TIME, topics.LONGITUDINAL_TIME)
-        self._times = ProcessingTimes([self._writer(topic) for topic in time_topics])
+        self._times = ProcessingTimes(*map(self._writer, time_topics))
         self.status = StatusTopic(self, self.publisher(topics.STATUS))
+        self.status.memory_bytes = platform.memory_bytes()
         self._ticks = 0
         self._last_tick: float | None = None
 
@@ -99,9 +100,17 @@ class ControllerNode(Node):
         """Do one tick of ``run``."""
         if due.skipped:
             self.logger.warning("%d ticks were missed", due.skipped, throttled=True)
-        if self._ticks % MEMORY_EVERY == 0:
-            self.status.memory_bytes = self.platform.memory_bytes()
         report = self.tick(due=due)
+        try:
+            self._after(report)
+        except MemoryError:
+            raise
+        except Exception as error:  # what only looks on must not stop what drives
+            self.logger.error("an observer failed: %s", describe(error), throttled=True)
+
+    def _after(self, report: TickReport) -> None:
+        if report.number % MEMORY_EVERY == 0:
+            self.status.memory_bytes = self.platform.memory_bytes()
         for observer in self.observers:
             observer(report)
 
@@ -123,9 +132,7 @@ class ControllerNode(Node):
             outcome, detail = Outcome.FAULT, describe(error)
             self.logger.error("the tick failed: %s", detail, throttled=True)
             self._fail(now)
-        self.inputs.warn(now)
-        if self.sender.command is None:
-            self.sender.withdraw()
+        self._end(now)
         self._ticks += 1
         self._last_tick = now
         lateral_ns, longitudinal_ns = self.controllers.spent_ns
@@ -198,8 +205,20 @@ class ControllerNode(Node):
             self._times.send(self.clock.wall_ns(), self.controllers.spent_ns)
         return self._path.send(checked, now)
 
+    def _end(self, now: float) -> None:
+        """Take back what no longer stands, and look for warnings; neither may end the process."""
+        try:
+            if self.sender.command is None:
+                self.sender.withdraw()
+            self.inputs.warn(now)
+        except MemoryError:
+            raise
+        except Exception as error:
+            self.logger.error("the end of a tick failed: %s", describe(error), throttled=True)
+
     def _fail(self, now: float) -> None:
         """End a tick that an exception has ended."""
+        self.check.skip()
         before, life = self.life_cycle.state, self.life_cycle.fault()
         if life.state is not before:
             tell_state(self.logger, life, NO_SUBJECT)

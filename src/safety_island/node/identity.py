@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from safety_island.dds import topics
+from safety_island.gate.writers import WINDOW_S, Writers
 from safety_island.life_cycle.island_watch import IslandWatch
 from safety_island.life_cycle.reason import Reason
 from safety_island.node.input_set import InputSet
@@ -32,6 +34,8 @@ class Identity:
         self.islands = IslandWatch(joined_at, discovery_s)
         self._transport, self._inputs, self._logger = transport, inputs, logger
         self._keeps_first = parameters.gate.second_publisher == "keep_first"
+        self._others = Writers(parameters.gate.writer_changes)
+        self._flaps_until = -math.inf
         self._changes = -1
         self._mismatches: Sequence[str] = ()
 
@@ -46,6 +50,9 @@ class Identity:
         if others - self.islands.others:
             self._logger.warning("another publisher is on %s", entry.name)
         self.islands.update(others, now)
+        self._others.update(others, now)
+        if self._others.flaps(now):
+            self._flaps_until = now + WINDOW_S
         self._inputs.discover(now)
         self._tell_mismatches()
 
@@ -64,6 +71,8 @@ class Identity:
             return Reason.SECOND_ISLAND
         if islands.looks_around(now):
             return Reason.DISCOVERING
+        if now <= self._flaps_until:
+            return Reason.WRITER_FLAPPING
         if islands.others and not self._keeps_first:
             return Reason.SECOND_PUBLISHER
         return _NONE

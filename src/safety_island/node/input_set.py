@@ -78,7 +78,7 @@ class InputSet:
         self._age_limits = [item.age_limit_s for item in self.items]
         self._usual_ages = [min(item.age_limit_s, item.age_warning_s) for item in self.items]
         self._are_fresh = False
-        """Whether no age is near its limit, as of the last ``measure``."""
+        """Whether no age is worth a warning or beyond its limit, as of the last ``measure``."""
 
     def discover(self, now: float) -> None:
         """Look which publishers live; to be called when some came or went."""

@@ -15,7 +15,8 @@ def explained(status: Status, number: int) -> Explanation:
     """Return what a reason means and what to do; ``number`` may be one of a newer island."""
     if number not in list(Reason):
         return Explanation(f"for reason {number}, unknown to this version", _NEWER)
-    other = "the topic of the command" if number == Reason.SECOND_PUBLISHER else "an input"
+    is_identity = number in (Reason.SECOND_PUBLISHER, Reason.WRITER_FLAPPING)
+    other = "the topic of the command" if is_identity else "an input"
     subject = input_name(status.subject) or other
     found = EXPLANATIONS[Reason(number)]
     return Explanation(*(_plain(text).replace("{subject}", subject) for text in found))
