@@ -58,6 +58,7 @@ def _setting(domain: str, *names: str) -> list[str | None]:
 def test_cyclone_settings_are_those_of_the_contract() -> None:
     assert _setting("any", "General", "AllowMulticast") == ["spdp"]
     assert _setting("any", "General", "MaxMessageSize") == ["1400B"]
+    assert _setting("any", "Discovery", "LeaseDuration") == ["1s"]
     root = ElementTree.parse(CYCLONE).getroot()
     pinned = {
         domain.get("Id"): interface.get("name")

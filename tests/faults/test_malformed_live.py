@@ -82,6 +82,7 @@ class Live:
         What DDS itself refuses, at the writer or the reader, does not arrive at all.
         """
         accepted, refused = self.item.accepted, self.item.refused.total()
+        self.item.stamps.forget()  # a stamp is no reason to refuse it
         if not self.write(data):
             return False
 

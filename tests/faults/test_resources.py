@@ -72,11 +72,22 @@ def lasting(scene: Scene, seconds: float) -> None:
         scene.platform.logger.lines.clear()
 
 
+@pytest.mark.parametrize("place", ["_encode", "warn"])
+def test_row_49_nor_is_it_swallowed_after_the_command(
+    place: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scene = Scene().drive()
+    where: Any = scene.node.status if place == "_encode" else scene.node.inputs
+    monkeypatch.setattr(where, place, fail_with(MemoryError()))
+    with pytest.raises(MemoryError):
+        scene.run(1.0)
+
+
 @pytest.mark.parametrize("place", ["run_lateral", "run_longitudinal", "sync", "_offer"])
 def test_row_49_without_memory_the_process_ends(
     place: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """No command of that tick, and an exception that no handler swallows: exit code 1."""
+    """No command of that tick, and an exception that no handler swallows."""
     scene = Scene().drive()
     ticks = len(scene.rows)
     where = scene.input("odometry") if place == "_offer" else scene.follower

@@ -17,8 +17,11 @@ import pytest
 
 from safety_island.control.follower import TrajectoryFollower
 from safety_island.control.status import Mode
+from safety_island.dds import topics
 from safety_island.life_cycle.state import State
+from safety_island.messages.arm import Arm, encode_arm
 from safety_island.messages.outputs import Control
+from safety_island.messages.wire import Time
 from safety_island.params import from_mapping
 from tests.node.rig import Point, Rig
 
@@ -131,6 +134,24 @@ def test_the_way_out_of_silence(drive: Drive) -> None:
     drive.until(State.ACTIVE, 1)
     drive.assert_smooth()
     drive.assert_near_the_measured_angle()
+
+
+def test_the_way_out_of_silence_by_a_request(drive: Drive) -> None:
+    entry = topics.ARM
+    asks = drive.rig.domain.publisher(entry.name, entry.type_name, entry.qos)
+    drive.engaged = True
+    drive.until(State.ACTIVE, 1)
+    drive.sees = False
+    drive.until(State.SILENT)
+    drive.sees = True
+    drive.until(State.SILENT)
+    asks.write(encode_arm(Arm(Time(), 1)))
+    drive.until(State.ACTIVE, 1)
+    drive.assert_near_the_measured_angle()
+    drive.angle = drive.commands[-1].steering_tire_angle
+    for _ in range(3):
+        drive.until(State.ACTIVE, 1)
+        drive.assert_smooth()
 
 
 def test_the_limits_are_those_of_the_set() -> None:

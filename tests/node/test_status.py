@@ -85,6 +85,23 @@ def test_what_the_guard_did(rig: Rig, follower: FakeFollower, heard: Any) -> Non
     assert math.isnan(status.command_acceleration) and not status.published
 
 
+def test_in_a_tick_without_a_command_the_guard_was_not_asked(
+    rig: Rig, follower: FakeFollower, heard: Any
+) -> None:
+    rig.tick(0.15)
+    status = heard()
+    assert (status.guard_verdict, status.guard_limits) == (NO_VALUE, 0)
+    tick(rig, engaged=False)
+    follower.command["acceleration"] = 50.0
+    tick(rig, engaged=False)
+    assert heard().guard_verdict == Verdict.CLAMPED
+    for _ in range(4):
+        rig.tick(0.15)
+    status = heard()
+    assert (status.guard_verdict, status.guard_limits) == (NO_VALUE, 0)
+    assert status.guard_clamped > 0
+
+
 def test_an_input_that_is_refused_and_one_that_is_old(rig: Rig, heard: Any) -> None:
     tick(rig, engaged=False)
     rig.send(topics.ODOMETRY, b"\0\1\0\0")

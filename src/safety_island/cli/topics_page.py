@@ -6,6 +6,18 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from safety_island.control.input_check import (
+    MAX_ACCELERATION,
+    MAX_BACKTRACK,
+    MAX_POSITION,
+    MAX_SPEED,
+    MAX_SQUARE_NORM,
+    MAX_TURN,
+    MIN_SQUARE_NORM,
+    SAME_PLACE,
+    STANDSTILL,
+)
+from safety_island.control.limits import MAX_POINTS
 from safety_island.dds.names import dds_topic_name
 from safety_island.dds.topics import OWN, TOPICS, TopicEntry
 from safety_island.messages.registry import dds_type_name
@@ -40,6 +52,30 @@ status answers: `island arm` sends one. Both types stand as `.msg` files in
 """
 
 
+_NORMS = f"{MIN_SQUARE_NORM**0.5:g} to {MAX_SQUARE_NORM**0.5:g}"
+
+BOUNDS = f"""\
+## Bounds of the inputs
+
+What is beyond them, or no number, is refused as `OUT_OF_RANGE`, `NOT_FINITE` or `BAD_QUATERNION`,
+and leaves the controllers as they were ([status](status.md) counts by reason). They are wide: they
+keep out what is no measurement, and the squares and sums of the rest finite.
+
+| fields | bound | unit | source |
+| --- | --- | --- | --- |
+| positions (x, y, z) | {MAX_POSITION:.0f} | m | a UTM northing stays below it |
+| speeds | {MAX_SPEED:g} | m/s | no road vehicle of series reaches it |
+| accelerations | {MAX_ACCELERATION:g} | m/s² | ten times what tyres can do |
+| angles of tyres, turn rates | {MAX_TURN:g} | rad, rad/s | sixteen turns; no vehicle does |
+| norm of an orientation | {_NORMS} | 1 | rounding leaves far less |
+| distance of two points | {SAME_PLACE:g} in x or y | m | nearer, they give no direction |
+| points of a trajectory | {MAX_POINTS} at most | 1 | the memory of the island |
+| length to and fro | {MAX_BACKTRACK:g} | m | rounding of a planner's points |
+| speeds of both signs | {STANDSTILL:g} | m/s | below it, a point has no direction |
+| operation mode | 0 to 255 | 1 | one byte on the wire |
+"""
+
+
 def render() -> str:
     """Return the page."""
     names = "\n".join(
@@ -49,6 +85,7 @@ def render() -> str:
     return (
         f"{INTRODUCTION}\n{_table(TOPICS)}\n\n"
         f"{OWN_TOPICS}\n{_table(OWN)}\n\n"
+        f"{BOUNDS}\n"
         "## As DDS tools show them\n\n"
         f"| ROS topic | DDS topic | DDS type |\n| --- | --- | --- |\n{names}\n"
     )

@@ -13,14 +13,14 @@ from safety_island.control.status import Refusal
 MAX_POSITION = 1e7
 """[m]; a UTM northing stays below it."""
 MAX_SPEED = 150.0
-"""[m/s]"""
+"""[m/s]; no road vehicle of series reaches it."""
 MAX_ACCELERATION = 100.0
-"""[m/s^2]"""
+"""[m/s^2]; ten times what tyres can do, as only a collision does."""
 MAX_TURN = 100.0
-"""Angles [rad] and turn rates [rad/s]."""
+"""Angles [rad] and turn rates [rad/s]; sixteen turns, or turns a second, as no vehicle does."""
 MIN_SQUARE_NORM = 0.99**2
 MAX_SQUARE_NORM = 1.01**2
-"""The norm of an orientation may be 1 % off."""
+"""The norm of an orientation may be 1 % off: single precision and averaging leave far less."""
 
 MAX_BACKTRACK = 0.05
 """Length [m] that a trajectory may lead against the direction of the rest of it."""
@@ -41,7 +41,8 @@ _MIXED = int(Refusal.MIXED_DIRECTION)
 
 _LARGEST_PART = 2.0  # of a quaternion; the square of a larger one could overflow
 _FEWEST_POINTS = 2
-_SAME_PLACE = 1e-8
+SAME_PLACE = 1e-8
+"""Two points nearer than this [m], in x and in y, are one."""
 _EXTENSION_POINTS = 256  # room for the points that the terminal extension appends
 
 
@@ -124,7 +125,7 @@ def check_trajectory(params, points, n):
         if i > 0:
             dx = points[i].x - points[i - 1].x
             dy = points[i].y - points[i - 1].y
-            if abs(dx) < _SAME_PLACE and abs(dy) < _SAME_PLACE:
+            if abs(dx) < SAME_PLACE and abs(dy) < SAME_PLACE:
                 return _COINCIDENT
             bound += abs(dx) + abs(dy)
             way = _advance(points[i - 1], dx, dy)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Protocol
 
 from safety_island.dds.topics import TopicEntry
@@ -78,11 +77,12 @@ class ControlTopic(TopicWriter):
 class ProcessingTimes:
     """Publishes how long each controller took, as ``Float64Stamped`` in milliseconds."""
 
-    def __init__(self, writers: Sequence[TopicWriter]) -> None:
-        self.writers = writers
+    def __init__(self, lateral: TopicWriter, longitudinal: TopicWriter) -> None:
+        self.writers = (lateral, longitudinal)
 
-    def send(self, wall_ns: int, spent_ns: Sequence[int]) -> None:
-        """Publish durations [ns], one for each topic; a failure is no reason to stop."""
+    def send(self, wall_ns: int, spent_ns: tuple[int, int]) -> None:
+        """Publish both durations [ns]; a failure is no reason to stop."""
         stamp = divmod(wall_ns, NANOSECONDS)
-        for writer, spent in zip(self.writers, spent_ns, strict=True):
-            writer.write(encode_float64_stamped(stamp, spent / 1e6))
+        (lateral, longitudinal), (lateral_ns, longitudinal_ns) = self.writers, spent_ns
+        lateral.write(encode_float64_stamped(stamp, lateral_ns / 1e6))
+        longitudinal.write(encode_float64_stamped(stamp, longitudinal_ns / 1e6))

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from operator import attrgetter
 from typing import TYPE_CHECKING
 
 from safety_island.dds import topics
+from safety_island.gate.writers import MOST_OTHERS
 from safety_island.life_cycle.state import State
 from safety_island.messages.status import encode_values
 from safety_island.messages.wire import NANOSECONDS
@@ -20,6 +22,7 @@ if TYPE_CHECKING:
     from safety_island.node.report import TickReport
 
 _ARMED = (State.ACTIVE, State.HOLD, State.STOP)
+_FAILED = attrgetter("failed")
 _NO_COMMAND = (math.nan,) * 4
 
 
@@ -40,6 +43,8 @@ class StatusTopic(TopicWriter):
         try:
             self._count(report)
             self.write(self._encode(report))
+        except MemoryError:
+            raise
         except Exception as error:  # what is only told must not stop what drives
             self._logger.error("no status: %s", describe(error), throttled=True)
 
@@ -57,7 +62,7 @@ class StatusTopic(TopicWriter):
         check, overrun, arming, inputs = node.check, self._overrun, node.arming, node.inputs
         mode = inputs.operation_mode
         errors, solver, states, limits = self._trace.last
-        sent = report.sent
+        sent, others = report.sent, len(node.identity.islands.others)
         return encode_values(
             *divmod(node.clock.wall_ns(), NANOSECONDS),
             arming.nonce,
@@ -78,7 +83,7 @@ class StatusTopic(TopicWriter):
             check.clamped,
             check.refused,
             check.sequence,
-            sum([output.failed for output in node.sender.outputs]),
+            sum(map(_FAILED, node.sender.outputs)),
             *solver,
             state,
             reason,
@@ -89,7 +94,7 @@ class StatusTopic(TopicWriter):
             check.verdict,
             self._mode,
             arming.result,
-            min(len(node.identity.islands.others), 255),
+            others if others < MOST_OTHERS else MOST_OTHERS,
             overrun.degraded,
             state in _ARMED,
             not inputs.disengaged,

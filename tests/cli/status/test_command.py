@@ -84,6 +84,16 @@ def test_no_island_is_one_line(domain_id: int, capsys: Capture, more: list[str])
     )
 
 
+@pytest.mark.parametrize("more", [[], ["--json"]])
+def test_who_waits_longer_is_told_once_that_there_is_none(
+    domain_id: int, capsys: Capture, more: list[str]
+) -> None:
+    assert main(words(domain_id, *more, "--timeout", "0.05", "--duration", "0.5")) == 1
+    told, ended = capsys.readouterr().err.splitlines()
+    assert told.startswith("island: no status came within 0.05 s")
+    assert ended.startswith("island: error: no status came within 0.5 s")
+
+
 def test_an_island_that_stands_still_is_told_apart(domain_id: int, capsys: Capture) -> None:
     with Participant(domain_id, DdsConfig(interface="lo"), "safety_island") as island:
         publisher = island.publisher(STATUS.name, STATUS.type_name, STATUS.qos)

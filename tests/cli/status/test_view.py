@@ -46,7 +46,7 @@ def test_all_is_well() -> None:
         "trajectory       91 ms  900 ms",
         "operation mode  12.5 s       -",
         "command     +0.097 rad, +0.012 rad/s, 6.49 m/s, -0.23 m/s²",
-        "output      DDS_ONLY, 1230 sent, the last is #1229",
+        "output      DDS_ONLY, 1230 sent",
         "mode        AUTONOMOUS, control enabled; island armed",
         "controller  DRIVE, MPC SOLVED, 3 iterations, 2 active, residual 3.2e-09",
         "errors      lateral +0.031 m, yaw -0.002 rad, stop in 63.0 m, target 6.56 m/s",
@@ -103,6 +103,8 @@ def test_a_plain_line_tells_the_figures_or_the_cause() -> None:
         "ACTIVE  tick 1234  +0.097 rad, +0.012 rad/s, 6.49 m/s, -0.23 m/s²"
         "  lateral +0.031 m  0.98 ms"
     )
+    alarm = plain_line(sample(other_control_writers=1))
+    assert alarm.endswith("another publisher is on /control/trajectory_follower/control_cmd")
     assert plain_line(BAD).startswith("SILENT  tick 1234  Nothing is being published: odometry")
 
 

@@ -32,6 +32,15 @@ SENTENCES = {
         "All is well: the island is ACTIVE, 1230 commands are sent, the last with +0.097 rad and"
         " -0.23 m/s²; the oldest input is trajectory (0.09 s).",
     ),
+    "another publisher": (
+        sample(other_control_writers=1),
+        "Commands are sent, but another publisher is on /control/trajectory_follower/control_cmd;"
+        " stop it, or the island.",
+    ),
+    "other publishers": (
+        sample(other_control_writers=2),
+        "Commands are sent, but 2 other publishers are on",
+    ),
     "with a warning": (
         sample({ODOMETRY: {"warnings": 5}}),
         "All is well, with a warning of odometry (AGE, CLOCK): the island is ACTIVE,",

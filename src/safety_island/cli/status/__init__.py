@@ -79,9 +79,14 @@ def _watch(arguments: argparse.Namespace, reader: StatusReader, show: Show) -> N
 
     stop = StopFlag()
     end = reader.now() + (arguments.duration or float("inf"))
+    told_at = reader.now() + arguments.timeout
     with load("posix").on_stop(stop.set), show:
         while not stop.is_set() and reader.now() < end:
             show(reader.take(end - reader.now()), reader.now())
+            if not reader.came and told_at <= reader.now() < end:
+                told_at = float("inf")
+                if arguments.json or not sys.stdout.isatty():  # the live view tells it itself
+                    print(f"island: {reader.nothing(arguments.timeout)}", file=sys.stderr)
     if not reader.came and not stop.is_set():
         raise reader.nothing(arguments.duration)
 

@@ -12,7 +12,7 @@ from safety_island.cli.status.names import (
     optional_name,
     verdict_of,
 )
-from safety_island.cli.status.why import flows, why
+from safety_island.cli.status.why import flows, others, why
 from safety_island.control.status import ControllerLimit, LongitudinalState, Mode, MpcStatus
 from safety_island.life_cycle.state import State
 from safety_island.messages.arm import ArmResult
@@ -42,7 +42,7 @@ def output(status: Status) -> str:
     """Return where commands go, and how many went."""
     failed = f", {status.output_failures} failures" if status.output_failures else ""
     mode = name_of(OutputMode, status.output_mode)
-    return f"{mode}, {status.commands} sent, the last is #{status.sequence}{failed}"
+    return f"{mode}, {status.commands} sent{failed}"
 
 
 def controller(status: Status) -> str:
@@ -113,7 +113,8 @@ def plain_line(status: Status) -> str:
     head = f"{name_of(State, status.state):<6}  tick {status.tick}"
     if not flows(status):
         return f"{head}  {why(status)}"
+    alarm = f"  {others(status)}" if status.other_control_writers else ""
     return (
         f"{head}  {command(status)}  lateral {status.lateral_error:+.3f} m"
-        f"  {duration(status.tick_time)}"
+        f"  {duration(status.tick_time)}{alarm}"
     )
