@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import pytest
+
 from safety_island.platform import LogConfig, LogLevel
+from tests.faults.hands import fail_with
 from tests.node.rig import ROWS, FakeFollower, Rig
 
 
@@ -28,6 +31,24 @@ def test_stop_ends_the_run_after_the_tick(rig: Rig) -> None:
     rig.node.observers.append(lambda report: rig.node.stop())
     rig.node.run(0.15)
     assert rig.node.report is not None and rig.node.report.number == 1
+
+
+def test_an_observer_that_fails_stops_neither_the_run_nor_the_others(rig: Rig) -> None:
+    seen: list[int] = []
+    rig.node.observers.append(fail_with(ZeroDivisionError("on purpose")))
+    rig.node.observers.append(lambda report: seen.append(report.number))
+    rig.node.run(0.15, duration_s=0.6)
+    assert seen == [1, 2, 3, 4]
+    assert any("an observer failed: ZeroDivisionError: on purpose" in line for line in rig.lines)
+
+
+@pytest.mark.parametrize("error", [MemoryError(), BrokenPipeError()])
+def test_without_memory_or_a_reader_of_what_it_prints_a_run_ends(
+    rig: Rig, error: Exception
+) -> None:
+    rig.node.observers.append(fail_with(error))
+    with pytest.raises(type(error)):
+        rig.node.run(0.15, duration_s=0.6)
 
 
 def test_missed_ticks_are_told(rig: Rig, follower: FakeFollower) -> None:

@@ -101,18 +101,17 @@ class ControllerNode(Node):
         if due.skipped:
             self.logger.warning("%d ticks were missed", due.skipped, throttled=True)
         report = self.tick(due=due)
-        try:
-            self._after(report)
-        except MemoryError:
-            raise
-        except Exception as error:  # what only looks on must not stop what drives
-            self.logger.error("an observer failed: %s", describe(error), throttled=True)
+        for observer in (self._look_at_memory, *self.observers):
+            try:
+                observer(report)
+            except (MemoryError, BrokenPipeError):  # who reads what a run prints may end it
+                raise
+            except Exception as error:  # what only looks on must not stop what drives
+                self.logger.error("an observer failed: %s", describe(error), throttled=True)
 
-    def _after(self, report: TickReport) -> None:
+    def _look_at_memory(self, report: TickReport) -> None:
         if report.number % MEMORY_EVERY == 0:
             self.status.memory_bytes = self.platform.memory_bytes()
-        for observer in self.observers:
-            observer(report)
 
     def tick(self, now: float | None = None, due: Tick = ON_TIME) -> TickReport:
         """Do one tick at ``now``, monotonic clock [s] (None: read it), and say what it did."""
