@@ -35,9 +35,7 @@ SINGLE = ("velocity", "rolling_speed", "shortest_step", "longest_step")
 def limited(**limits: Any) -> GuardParams:
     """WIDE with some limits changed; a number stands for a list of it."""
     lists: dict[str, Any] = {
-        name: (value, value)
-        if isinstance(value, float) and name not in SINGLE
-        else value
+        name: (value, value) if isinstance(value, float) and name not in SINGLE else value
         for name, value in limits.items()
     }
     return replace(WIDE, **lists)

@@ -125,7 +125,7 @@ def test_the_other_way_than_it_rolls(speed: float, velocity: float) -> None:
 
 def test_in_reverse_the_limits_are_those_of_the_same_speed_forward() -> None:
     """Beyond the last point braking may be 3 m/s^2, at standstill 4."""
-    at = {"sent": (0.0, -2.5), "speed": -6.0}
+    at: dict[str, Any] = {"sent": (0.0, -2.5), "speed": -6.0}
     assert keeps((0.0, 0.0, -6.0, -3.0), **at)
     assert not keeps((0.0, 0.0, -6.0, -3.5), **at)
 

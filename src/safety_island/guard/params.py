@@ -7,7 +7,6 @@ from typing import Any
 
 from safety_island.parameter import parameter
 
-
 NO_LIMIT = 1e12
 """More than any command of the controllers comes to, whatever their parameters and inputs are."""
 
@@ -53,9 +52,7 @@ class GuardParams:
     deceleration: tuple[float, ...] = _limit(
         "deceleration", "m/s^2", "Largest acceleration that brakes."
     )
-    jerk: tuple[float, ...] = _limit(
-        "jerk", "m/s^3", "Largest rise of the acceleration with time."
-    )
+    jerk: tuple[float, ...] = _limit("jerk", "m/s^3", "Largest rise of the acceleration with time.")
     brake_jerk: tuple[float, ...] = _limit(
         "brake_jerk", "m/s^3", "Largest growth of braking with time."
     )
