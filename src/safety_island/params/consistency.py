@@ -219,7 +219,7 @@ STRICTER = (
 
 
 def _largest(value: Any, scale: float = 1.0) -> float:
-    numbers = value if isinstance(value, tuple) else (value,)
+    numbers: tuple[float, ...] = value if isinstance(value, tuple) else (value,)
     return max(number * scale for number in numbers)
 
 
