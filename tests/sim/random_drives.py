@@ -97,24 +97,28 @@ class NodeFollower:
 
     def __init__(self, parameters: IslandParameters, random: Random) -> None:
         self.platform = make(LogConfig(level=LogLevel.NONE))
-        self._domain = MemoryDomain(self.platform.clock)
+        self.domain = MemoryDomain(self.platform.clock)
         self.follower = TrajectoryFollower(parameters)
-        self.node = ControllerNode(self.platform, self._domain, self.follower, parameters)
+        self.node = ControllerNode(self.platform, self.domain, self.follower, parameters)
         self._write = {
-            topic.key: self._domain.publisher(topic.name, topic.type_name, topic.qos).write
+            topic.key: self.domain.publisher(topic.name, topic.type_name, topic.qos).write
             for topic in topics.INPUTS
         }
         entry = topics.CONTROL
-        self._published = self._domain.subscription(entry.name, entry.type_name, entry.qos)
+        self._published = self.domain.subscription(entry.name, entry.type_name, entry.qos)
         self._random, self._now = random, START_S
         self._aside = self._reverse = self._manual = 0
         self.command: Records = np.zeros(1, COMMAND)
         self.published: Control | None = None
 
-    def disturb(self, now: float) -> None:
-        """Set the clock for what is offered next, and choose what goes wrong."""
+    def at(self, now: float) -> None:
+        """Set the clock for what is offered next."""
         self._now = now
         self.platform.clock.advance_to_ns(round(now * 1e9))
+
+    def disturb(self, now: float) -> None:
+        """Set the clock, and choose what goes wrong."""
+        self.at(now)
         for name in ("_aside", "_reverse", "_manual"):
             left = getattr(self, name)
             started = self._random.randrange(5, 25) if self._random.random() < 0.006 else 0
