@@ -20,11 +20,15 @@ class RecordingOutput:
         self.failed = 0
         self.works = works
         self.sent: list[tuple[Control, int]] = []
+        self.foreign_frames = 0
         self.closed = False
 
     def send(self, command: Control, stamp_ns: int) -> bool:
         self.sent.append((command, stamp_ns))
         return self.works
+
+    def listen(self) -> int:
+        return self.foreign_frames
 
     def close(self) -> None:
         self.closed = True

@@ -7,7 +7,7 @@ from safety_island.cli.status.names import name_of
 from safety_island.cli.status.reasons import explained
 from safety_island.cli.status.samples import oldest_input, refusal_action, warned
 from safety_island.dds.topics import CONTROL
-from safety_island.life_cycle.reason import Reason
+from safety_island.life_cycle.reason import EXPLANATIONS, Reason
 from safety_island.life_cycle.state import State
 from safety_island.messages.status_fields import Status
 
@@ -37,8 +37,8 @@ def _flowing(status: Status) -> str:
     if status.reason != Reason.NONE:
         because = _because(status, status.reason)
         return because[0].upper() + because[1:]
-    if status.other_control_writers:
-        return f"Commands are sent, but {others(status)}; stop it, or the island."
+    if rivals := others(status):
+        return f"Commands are sent, but {rivals}; stop it, or the island."
     return (
         f"All is well{warned(status)}: the island is {name_of(State, status.state)},"
         f" {status.commands} commands are sent, the last with {status.command_angle:+.3f} rad and"
@@ -47,10 +47,14 @@ def _flowing(status: Status) -> str:
 
 
 def others(status: Status) -> str:
-    """Return who else publishes commands."""
-    count = status.other_control_writers
-    who = "another publisher is" if count == 1 else f"{count} other publishers are"
-    return f"{who} on {CONTROL.name}"
+    """Return who else sends commands; empty when nobody does."""
+    found = []
+    if count := status.other_control_writers:
+        who = "another publisher is" if count == 1 else f"{count} other publishers are"
+        found.append(f"{who} on {CONTROL.name}")
+    if status.foreign_can_frames:
+        found.append(EXPLANATIONS[Reason.SECOND_CAN_MASTER].meaning)
+    return ", and ".join(found)
 
 
 def _missed(status: Status) -> str:
