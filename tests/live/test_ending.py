@@ -88,18 +88,19 @@ def _closed(driving: Driving) -> Iterator[Driving]:
 
 
 def went_on(driving: Driving, ticks: int = 20) -> None:
-    """Wait for some more ticks, every one ACTIVE."""
+    """Wait for some more ticks; nothing ends (a busy machine may be late with inputs)."""
     scene = driving.scene
     first = scene.state(State.ACTIVE).message.tick
-    states = []
+    reasons = set()
 
     def enough() -> bool:
         found = scene.island.heard[topics.STATUS][-1].message
-        states.append(found.state)
+        reasons.add(found.reason)
         return bool(found.tick >= first + ticks)
 
     scene.until(enough, "it drives on")
-    assert set(states) == {State.ACTIVE}
+    assert Reason.SHUTTING_DOWN not in reasons
+    assert driving.process.poll() is None
 
 
 @pytest.mark.parametrize("number", SIGNALS)
