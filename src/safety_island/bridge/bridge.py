@@ -22,6 +22,9 @@ LONGEST_WAIT_S = 0.1
 LOOK_S, HOLDING_S = 0.05, 0.01
 """Times [s] between looks at who is there: usually, and while a new publisher holds samples."""
 REPORT_S = 1.0
+STALL_S, CATCH_UP_S = 0.2, 0.05
+"""A wait that is longer by this time [s] means that the process stood still; the library then gets
+some time to receive all that has come meanwhile, so that only the newest of it is forwarded."""
 
 Report = Callable[[str, Mapping[str, Any]], None]
 """Called with an event and its values.
@@ -84,7 +87,11 @@ class Bridge:
         if self._group is None:
             time.sleep(timeout_s)
             return
-        for link in dict.fromkeys(self._group.wait(timeout_s)):
+        began = time.monotonic()
+        ready = self._group.wait(timeout_s)
+        if time.monotonic() - began > timeout_s + STALL_S:
+            time.sleep(CATCH_UP_S)
+        for link in dict.fromkeys(ready):
             link.forward()
 
     def run(self, stop: StopEvent, report: Report | None = None, duration_s: float = 0.0) -> None:

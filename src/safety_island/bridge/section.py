@@ -166,8 +166,7 @@ def _check_nesting(path: str, text: str) -> None:
             mark = event.start_mark
             raise ConfigurationError(
                 f"{path}:{1 if mark is None else mark.line + 1}: more than {MAX_NESTING} levels of"
-                " lists and maps, expected a"
-                " bridge file, which has five"
+                " lists and maps, expected a bridge file, which has five"
             )
 
 
