@@ -61,6 +61,8 @@ class RawEndpoint(NamedTuple):
     alive: bool
     handle: int = 0
     """The ``publication_handle`` of its samples."""
+    lives: int = 0
+    """How often it had left before, as far as the library remembers."""
 
 
 def check_version() -> None:
@@ -163,8 +165,16 @@ def _endpoint(
     _type_id: bytes | None,
 ) -> RawEndpoint:
     alive = info.valid_data and info.instance_state == InstanceState.Alive
-    handle: int = info.instance_handle
-    return RawEndpoint(key, participant, topic or "", type_name or "", qos, alive, handle)
+    return RawEndpoint(
+        key,
+        participant,
+        topic or "",
+        type_name or "",
+        qos,
+        alive,
+        info.instance_handle,
+        info.disposed_generation_count,
+    )
 
 
 def _qos_or_none(pointer: int) -> Any:

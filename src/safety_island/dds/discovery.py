@@ -43,6 +43,8 @@ class RemoteEndpoint:
     """The ``publication_handle`` of its samples."""
     number: int = 0
     """How many endpoints were found before: one that left and came back has another number."""
+    lives: int = 0
+    """How often it had left before, as far as the library remembers."""
 
 
 class Endpoints:
@@ -87,10 +89,12 @@ class Endpoints:
 
     def _note(self, event: binding.RawEndpoint) -> None:
         known = self._known.get(event.guid)
-        if not event.alive:
-            if known is not None:
-                self._gone.append(self._known.pop(event.guid))
-        elif event.participant != self._own:
+        if known is not None and not (event.alive and event.lives == known.lives):
+            self._gone.append(self._known.pop(event.guid))
+            known = None
+        elif known is None and not event.alive and event.topic:  # it left before anybody looked
+            self._gone.append(_endpoint(event, self._found))
+        if event.alive and event.participant != self._own:
             self._found += known is None
             number = self._found if known is None else known.number
             self._known[event.guid] = _endpoint(event, number)
@@ -106,6 +110,7 @@ def _endpoint(event: binding.RawEndpoint, number: int) -> RemoteEndpoint:
         type_hash="" if event.qos is None else _type_hash(event.qos[Policy.Userdata]),
         handle=event.handle,
         number=number,
+        lives=event.lives,
     )
 
 
