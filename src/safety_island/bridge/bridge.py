@@ -59,6 +59,8 @@ class Bridge:
                 domain: stack.enter_context(Participant(domain, dds, f"{name}_{domain}"))
                 for domain in domains
             }
+            self._participants = list(found.values())
+            self._changes: list[int] = []
             self._alarms: list[Mapping[str, Any]] = []
             self._group = stack.enter_context(WaitGroup[Link]()) if domains else None
             self.links = [
@@ -79,8 +81,11 @@ class Bridge:
 
     def look(self) -> None:
         """Open, change or close routes by who is there now."""
+        changes = [participant.changes() for participant in self._participants]
         for link in self.links:
-            link.look()
+            if changes != self._changes or link.is_unsettled:
+                link.look()
+        self._changes = changes
 
     def forward(self, timeout_s: float) -> None:
         """Wait at most ``timeout_s`` [s] for samples and forward all."""

@@ -93,6 +93,7 @@ class Link:
         self._outlets = Outlets(
             route.qos, target, (route.target[1], self.write_type), self.counts, self._lost
         )
+        self._requests: dict[Qos, Qos] = {}
         self._sources: dict[int, _Source] = {}
         self._foreign: set[int] = set()
         """Handles of publishers on the topic that are not forwarded."""
@@ -128,6 +129,16 @@ class Link:
         """Whether a publisher beyond is so new that it holds its samples."""
         return self._outlets.is_holding(time.monotonic())
 
+    @property
+    def is_unsettled(self) -> bool:
+        """Whether there is something to do at the next look, though nobody came or went."""
+        return (
+            self._outlets.are_unsettled
+            or (self._found_at is not None and not self.is_open)
+            or self._kept.others != self._alarmed
+            or self.route.keep.publisher.startswith("/")  # nodes tell their names later
+        )
+
     def close(self) -> None:
         """Leave both topics."""
         self._inlets.close()
@@ -139,21 +150,20 @@ class Link:
     def _process(self, now: float, taken: Taken, *, must_update: bool) -> None:
         """Forward what was taken; what a publisher sent last comes before its end."""
         gone: list[_Source] = []
-        if must_update or not all(self._knows(raw.publication_handle) for _, raw in taken):
+        must_update = must_update or not all(self._knows(raw) for _, raw in taken)
+        if must_update:
             gone, more = self._update(now, {raw.publication_handle for _, raw in taken})
             taken += more + (self._inlets.take() if gone else [])
         self._outlets.flush(now)
         self._pass_on(now, taken)
-        self._end(taken)
-        self._release(gone)
-        for source in self._sources.values():
-            source.is_between = False
-        if self._sources:
-            self._inlets.close_all_but({source.asked for source in self._sources.values()})
-        self._outlets.tidy(now, keeps_one=not self._wait_for.publisher)
+        if not all(raw.is_alive for _, raw in taken):
+            self._end(taken)
+        if must_update:
+            self._release(gone)
+            self._outlets.tidy(now, keeps_one=not self._wait_for.publisher)
 
-    def _knows(self, handle: int) -> bool:
-        return handle in self._sources or handle in self._foreign
+    def _knows(self, raw: RawSample) -> bool:
+        return raw.publication_handle in self._sources or raw.publication_handle in self._foreign
 
     def _update(self, now: float, heard: set[int]) -> tuple[list[_Source], Taken]:
         """Follow who is there; return who is gone, and what came to older subscriptions.
@@ -185,8 +195,7 @@ class Link:
         if known is not None and known.endpoint.number == endpoint.number:
             known.endpoint = endpoint
             return []
-        asked = request(self.route.qos, endpoint.qos)
-        self._sources[handle] = _Source(endpoint, asked, new_until=now + HOLD_S)
+        self._sources[handle] = _Source(endpoint, self._request(endpoint), new_until=now + HOLD_S)
         return [] if known is None else [known]
 
     def _follow_the_departed(self, handles: set[int]) -> list[_Source]:
@@ -195,31 +204,50 @@ class Link:
         for handle in handles if self.route.keep == Keep() else ():
             endpoint = self._source.publication(handle)
             if endpoint is not None and self._can_hear(endpoint):
-                source = _Source(endpoint, request(self.route.qos, endpoint.qos), is_between=True)
+                source = _Source(endpoint, self._request(endpoint), is_between=True)
                 self._sources[handle] = source
                 found.append(source)
         return found
 
+    def _request(self, endpoint: RemoteEndpoint) -> Qos:
+        """What is asked for to hear a publisher; always the same object, so that ``is`` tells."""
+        asked = request(self.route.qos, endpoint.qos)
+        return self._requests.setdefault(asked, asked)
+
     def _default_request(self) -> list[Qos]:
-        return [] if self._wait_for.publisher else [request(self.route.qos, NO_OFFER)]
+        if self._wait_for.publisher:
+            return []
+        asked = request(self.route.qos, NO_OFFER)
+        return [self._requests.setdefault(asked, asked)]
 
     def _pass_on(self, now: float, taken: Taken) -> None:
-        """Forward the samples of known publishers, of each the newest that it has room for."""
-        mine = [(self._sender(asked, raw), raw) for asked, raw in taken if raw.valid]
-        waiting = Counter(raw.publication_handle for source, raw in mine if source is not None)
-        for source, raw in mine:
-            if source is None:
-                self.counts.foreign += raw.publication_handle not in self._sources
+        """Forward the samples of known publishers."""
+        mine: list[tuple[_Source, RawSample]] = []
+        for asked, raw in taken:
+            if not raw.valid:
                 continue
+            if (source := self._sender(asked, raw)) is not None:
+                mine.append((source, raw))
+            elif raw.publication_handle not in self._sources:
+                self.counts.foreign += 1
+        for source, raw in mine if len(mine) < 2 else self._newest(mine, now):
             source.has_sent, source.is_quiet = True, False
+            self._send(source.outlet or self._outlet_of(source, now), raw.data, now)
+
+    def _newest(
+        self, mine: Sequence[tuple[_Source, RawSample]], now: float
+    ) -> list[tuple[_Source, RawSample]]:
+        """Of the samples of each publisher the newest that there is room for, in their order."""
+        found, count = [], Counter[int]()
+        for source, raw in reversed(mine):
             outlet = self._outlet_of(source, now)
             is_history = outlet.is_latched and now < source.new_until
             room = outlet.qos.depth if is_history else outlet.room
-            waiting[raw.publication_handle] -= 1
-            if room is not None and waiting[raw.publication_handle] >= room:
-                self.counts.superseded += 1
-            else:
-                self._send(outlet, raw.data, now)
+            count[raw.publication_handle] += 1
+            if room is None or count[raw.publication_handle] <= room:
+                found.append((source, raw))
+        self.counts.superseded += len(mine) - len(found)
+        return found[::-1]
 
     def _sender(self, asked: Qos, raw: RawSample) -> _Source | None:
         """The publisher of a sample; None when it is not forwarded, or not from here.
@@ -230,7 +258,7 @@ class Link:
         source = self._sources.get(raw.publication_handle)
         if source is None or raw.source_timestamp_ns in source.early:
             return None
-        if source.asked != asked:
+        if source.asked is not asked:
             if not source.is_between:
                 return None
             source.early.add(raw.source_timestamp_ns)
@@ -254,7 +282,7 @@ class Link:
         """Pass on what publishers have disposed, unregistered, or no longer assert to be alive."""
         for asked, raw in {(a, r.publication_handle): (a, r) for a, r in taken}.values():
             source = self._sources.get(raw.publication_handle)
-            if source is not None and source.asked == asked and raw.is_disposed and source.outlet:
+            if source is not None and source.asked is asked and raw.is_disposed and source.outlet:
                 source.outlet.dispose()
         for asked, raw in dict(taken).items():
             if raw.is_orphaned:
@@ -263,7 +291,7 @@ class Link:
     def _silence(self, asked: Qos) -> None:
         """No publisher of a kind is alive: neither are those that speak for them."""
         for source in self._sources.values():
-            if source.asked == asked and source.has_sent:
+            if source.asked is asked and source.has_sent:
                 source.has_sent, source.is_quiet = False, True
                 self._leave_outlet(source)
 
@@ -272,6 +300,10 @@ class Link:
             self._leave_outlet(source)
             if self._sources.get(source.endpoint.handle) is source:
                 del self._sources[source.endpoint.handle]
+        for source in self._sources.values():
+            source.is_between = False
+        if self._sources:
+            self._inlets.close_all_but({source.asked for source in self._sources.values()})
 
     def _leave_outlet(self, source: _Source) -> None:
         if source.outlet is not None:

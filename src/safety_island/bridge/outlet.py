@@ -61,6 +61,11 @@ class Outlet:
         """Whether it keeps its last samples for late readers; then it has one user only."""
         return self.qos.durability == "transient_local"
 
+    @property
+    def holds(self) -> bool:
+        """Whether samples wait for readers to find it."""
+        return bool(self._held)
+
     def send(self, data: bytes, now: float) -> None:
         """Publish a sample, or hold it until readers have found this publisher."""
         self.used = self.stands = True

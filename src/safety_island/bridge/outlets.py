@@ -79,6 +79,11 @@ class Outlets:
         for outlet in self._open:
             outlet.flush(now)
 
+    @property
+    def are_unsettled(self) -> bool:
+        """Whether one of them holds samples, or is to be closed."""
+        return any(outlet.holds or not outlet.users for outlet in self._open)
+
     def is_holding(self, now: float) -> bool:
         """Whether one of them still holds its samples."""
         return any(now < outlet.ready_at for outlet in self._open)

@@ -40,6 +40,11 @@ class RawSample(NamedTuple):
     """What became of the topic's instance by now: an ``InstanceState``."""
 
     @property
+    def is_alive(self) -> bool:
+        """Whether what was said last still counts."""
+        return self.state == InstanceState.Alive
+
+    @property
     def is_disposed(self) -> bool:
         """Whether a publisher has disposed what was said last."""
         return self.state == InstanceState.NotAliveDisposed

@@ -149,6 +149,10 @@ class Participant:
         """Count the publishers of others that came, changed or went so far; cheap to ask."""
         return self._found[PUBLICATIONS].changes()
 
+    def changes(self) -> int:
+        """Count the publishers and subscriptions of others that came, changed or went so far."""
+        return sum(found.changes() for found in self._found.values())
+
     def writers(self, topic: str, type_name: str) -> frozenset[bytes]:
         """Return the live publishers of other participants on a ROS topic, by their GUIDs."""
         found = self.publications(topic)
