@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+
 import pytest
 from cyclonedds import _clayer
 
@@ -181,3 +183,22 @@ def test_of_a_long_history_that_comes_at_once_the_newest_is_forwarded(rig: Rig) 
     rig.settle()
     assert subscription.take_all() == []
     assert bridge.totals()["superseded"] == 9
+
+
+@pytest.mark.parametrize("end", ["disposes", "leaves"])
+def test_what_ended_while_the_bridge_stood_still_is_not_passed_on(rig: Rig, end: str) -> None:
+    """A command from before a silence would arrive after it."""
+    bridge = rig.bridge(_text())
+    publisher, subscription = _publisher(rig), _subscription(rig)
+    assert publisher.write(_sample(1))
+    assert rig.receive(subscription) == [_sample(1)]
+    assert publisher.write(_sample(2))
+    if end == "disposes":
+        publisher.withdraw()
+    else:
+        publisher.close()
+    time.sleep(0.5)
+    bridge.forward(0.0)
+    rig.settle()
+    assert subscription.take_all() == []
+    assert _late(rig) == []

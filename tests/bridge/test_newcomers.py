@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 
 import pytest
 
+from safety_island.dds.discovery import PUBLICATIONS
 from safety_island.dds.endpoints import Publisher, Subscription
 from safety_island.dds.qos import LATCHED, Qos
 from safety_island.messages.inputs import STEERING, Steering, encode_steering
@@ -126,6 +128,23 @@ def test_those_who_are_there_at_the_start_differ(rig: Rig) -> None:
     rig.until(lambda: all(end.matched() for end in readers))
     assert len(_taken(rig, readers[1])) == sum(map(len, sent))
     assert _taken(rig, readers[2]) == sent[2]
+
+
+@pytest.mark.parametrize("qos", [RELIABLE, LATCHED], ids=str)
+def test_a_publisher_that_was_away_is_forwarded_again(rig: Rig, qos: Qos) -> None:
+    """The lease lapsed and was renewed between two looks, as after a stall of the bridge."""
+    bridge = rig.bridge(ONE_WAY)
+    publisher, subscription = _publisher(rig, qos), _subscription(rig, WEAKEST)
+    assert _send(rig, publisher, range(3)) == _taken(rig, subscription)
+    source = bridge.links[0]._source
+    (known,) = source.publications("/t")
+    assert publisher.write(_sample(3))
+    time.sleep(0.05)  # it has come, and was not taken yet
+    source._found[PUBLICATIONS]._known[known.guid] = replace(known, number=known.number + 9)
+    bridge.links[0].look()
+    assert _taken(rig, subscription) == [_sample(3)]
+    assert _send(rig, publisher, range(4, 7)) == _taken(rig, subscription)
+    assert bridge.totals()["failed"] == 0
 
 
 def test_a_publisher_that_only_just_lives_is_forwarded(rig: Rig) -> None:

@@ -23,8 +23,8 @@ LOOK_S, HOLDING_S = 0.05, 0.01
 """Times [s] between looks at who is there: usually, and while a new publisher holds samples."""
 REPORT_S = 1.0
 STALL_S, CATCH_UP_S = 0.2, 0.05
-"""A wait that is longer by this time [s] means that the process stood still; the library then gets
-some time to receive all that has come meanwhile, so that only the newest of it is forwarded."""
+"""When the process stood still for this time [s], the library gets some time to receive all that
+has come meanwhile, so that only the newest of it is forwarded, and nothing that has ended."""
 
 Report = Callable[[str, Mapping[str, Any]], None]
 """Called with an event and its values.
@@ -61,6 +61,7 @@ class Bridge:
             }
             self._participants = list(found.values())
             self._changes: list[int] = []
+            self._worked_at = time.monotonic()
             self._alarms: list[Mapping[str, Any]] = []
             self._group = stack.enter_context(WaitGroup[Link]()) if domains else None
             self.links = [
@@ -92,12 +93,13 @@ class Bridge:
         if self._group is None:
             time.sleep(timeout_s)
             return
-        began = time.monotonic()
         ready = self._group.wait(timeout_s)
-        if time.monotonic() - began > timeout_s + STALL_S:
+        stood_still = time.monotonic() - self._worked_at > timeout_s + STALL_S
+        if stood_still:
             time.sleep(CATCH_UP_S)
-        for link in dict.fromkeys(ready):
-            link.forward()
+        for link in self.links if stood_still else dict.fromkeys(ready):
+            link.forward(stood_still=stood_still)
+        self._worked_at = time.monotonic()
 
     def run(self, stop: StopEvent, report: Report | None = None, duration_s: float = 0.0) -> None:
         """Forward until ``stop`` is set, or for ``duration_s`` [s] when that is not 0."""

@@ -119,10 +119,18 @@ class Link:
             self._show_a_publisher(now)
         self._warn()
 
-    def forward(self) -> None:
-        """Forward everything that has come, oldest first."""
-        if self.is_open:
-            self._process(time.monotonic(), self._inlets.take(), must_update=False)
+    def forward(self, *, stood_still: bool = False) -> None:
+        """Forward everything that has come, oldest first.
+
+        ``stood_still``: it may have come long ago. What was latched and has ended meanwhile is not
+        passed on then: a command from before a silence would arrive after it.
+        """
+        if not self.is_open:
+            return
+        taken = self._inlets.take()
+        if stood_still:
+            taken = [(asked, _without_what_ended(asked, raw)) for asked, raw in taken]
+        self._process(time.monotonic(), taken, must_update=stood_still)
 
     @property
     def is_holding(self) -> bool:
@@ -273,7 +281,7 @@ class Link:
             ]
             if source.asked.durability == "transient_local":
                 alike = []  # what lasts belongs to one publisher
-            user = source.endpoint.handle
+            user = source.endpoint.number
             source.outlet = self._outlets.assign(user, [source.endpoint.qos, *alike], now)
             self._note(f"publishes {_kind(source.outlet.qos)}")
         return source.outlet
@@ -307,7 +315,7 @@ class Link:
 
     def _leave_outlet(self, source: _Source) -> None:
         if source.outlet is not None:
-            source.outlet.users.discard(source.endpoint.handle)
+            source.outlet.users.discard(source.endpoint.number)
             source.outlet = None
 
     def _show_a_publisher(self, now: float) -> None:
@@ -419,6 +427,12 @@ class Link:
         if text not in self._told and len(self._told) < _MAX_TOLD:
             self._told.add(text)
             self._say(f"{self.route}: {text}")
+
+
+def _without_what_ended(asked: Qos, raw: RawSample) -> RawSample:
+    """Turn a sample that was meant to last, and does not any more, into a notice of its end."""
+    is_latched = asked.durability == "transient_local"
+    return raw._replace(valid=False) if is_latched and not raw.is_alive else raw
 
 
 def _kind(qos: Qos) -> str:

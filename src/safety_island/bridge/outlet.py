@@ -31,7 +31,7 @@ class Counts:
 class Outlet:
     """Publishes for one latched publisher, or for all others together.
 
-    ``users`` are the handles of the publishers that it speaks for; ``room`` as in ``matching``.
+    ``users`` are the numbers of the publishers that it speaks for; ``room`` as in ``matching``.
     Times in s, monotonic.
     """
 

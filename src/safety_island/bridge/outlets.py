@@ -35,7 +35,7 @@ class Outlets:
     def assign(self, user: int, offers: Sequence[Qos], now: float) -> Outlet:
         """Return the outlet for a publisher, a new one when none fits.
 
-        ``user`` is its handle; ``offers`` are its policies, and behind them those of all others
+        ``user`` is its number; ``offers`` are its policies, and behind them those of all others
         that could share an outlet with it. An outlet is never made weaker, nor made anew.
         """
         qos = offer_beyond(self._wish, offers)

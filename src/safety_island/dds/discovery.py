@@ -93,6 +93,7 @@ class Endpoints:
             self._gone.append(self._known.pop(event.guid))
             known = None
         elif known is None and not event.alive and event.topic:  # it left before anybody looked
+            self._found += 1
             self._gone.append(_endpoint(event, self._found))
         if event.alive and event.participant != self._own:
             self._found += known is None
