@@ -165,9 +165,7 @@ def test_row_86_a_rogue_command_does_not_pass_the_bridge(drive: Scene) -> None:
     assert publisher.guid.hex() in drive.log(BRIDGE)
 
 
-def test_row_81_the_bridge_forgets_modes_that_are_not_in_force(
-    scene: Scene, mode: ModePublisher
-) -> None:
+def test_the_bridge_forgets_modes_that_are_not_in_force(scene: Scene, mode: ModePublisher) -> None:
     """Whoever finds its publisher again receives the last one only."""
     for value in (Mode.STOP, Mode.AUTONOMOUS) * 3 + (Mode.STOP,):
         mode.tell(value)
