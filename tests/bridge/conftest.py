@@ -48,10 +48,10 @@ class Rig:
         self._bridges.remove(bridge)
         bridge.close()
 
-    def participant(self, letter: str) -> Participant:
+    def participant(self, letter: str, name: str = "neighbour") -> Participant:
         """Join a domain as somebody else."""
         domain = self.domains["ABC".index(letter)]
-        return self._stack.enter_context(Participant(domain, LOOPBACK, "neighbour"))
+        return self._stack.enter_context(Participant(domain, LOOPBACK, name))
 
     def until(self, condition: Callable[[], object]) -> None:
         """Drive every bridge until the condition holds; fail when it takes too long."""

@@ -85,24 +85,37 @@ def test_its_own_output_is_not_fed_back(rig: Rig, here: str, there: str) -> None
     rig.settle()
     assert subscription.take_all() == []
     assert len(listener.take_all()) == 5
-    assert (bridge.totals()["forwarded"], bridge.totals()["own"]) == (5, 0)
+    assert bridge.totals()["forwarded"] == 5
 
 
-def test_a_chain_of_bidirectional_entries_delivers_once_everywhere(rig: Rig) -> None:
-    entry = f"type: {STEERING}, bidirectional: true"
-    text = f"topics:\n  /t: {{{entry}, from_domain: A, to_domain: B}}\n"
-    bridge = rig.bridge(f"{text}  /t: {{{entry}, from_domain: B, to_domain: C}}\n")
-    publishers = {letter: _publisher(rig, letter) for letter in "ABC"}
-    subscriptions = {letter: _subscription(rig, letter) for letter in "ABC"}
-    rig.match(*publishers.values(), *subscriptions.values())
+@pytest.mark.parametrize("back", ["from_domain: B, to_domain: A", "reversed: true"])
+def test_two_entries_in_opposite_directions_are_one_that_goes_both_ways(
+    rig: Rig, back: str
+) -> None:
+    """As in ROS 2: a bridge does not hear what it published itself."""
+    rig.bridge(f"{ONE_WAY}  /t: {{type: {STEERING}, {back}}}\n")
+    publishers = [_publisher(rig, letter) for letter in "AB"]
+    subscriptions = [_subscription(rig, letter) for letter in "AB"]
+    rig.match(*publishers, *subscriptions)
+    sent = [_send(publisher, 3) for publisher in publishers]
     rig.settle()
-    for start, end in ("AC", "CA"):
-        assert _send(publishers[start], 4) == rig.receive(subscriptions[end], 4)
+    assert [len(one.take_all()) for one in subscriptions] == [6, 6]
+    assert all(sent)
+
+
+def test_what_one_entry_published_no_other_one_forwards(rig: Rig) -> None:
+    """The reference's example has both: chatter to two domains, and back from one of them."""
+    text = f"{ONE_WAY}  /t: {{type: {STEERING}, to_domain: C}}\n"
+    text += f"  /t: {{type: {STEERING}, reversed: true}}\n"
+    rig.bridge(text + f"  /t: {{type: {STEERING}, remap: /u}}\n")
+    publishers = [_publisher(rig, letter) for letter in "AB"]
+    subscriptions = [_subscription(rig, letter) for letter in "ABC"]
+    other = rig.participant("B").subscription("/u", STEERING, DEEP)
+    rig.match(*publishers, *subscriptions, other)
+    for publisher, expected in zip(publishers, ([3, 3, 3, 3], [3, 3, 0, 0]), strict=True):
+        _send(publisher, 3)
         rig.settle()
-        counts = [len(subscriptions[letter].take_all()) for letter in (start, "B", end)]
-        assert counts == [4, 4, 0]
-    assert bridge.totals()["forwarded"] == 16
-    assert bridge.totals()["own"] > 0
+        assert [len(one.take_all()) for one in (*subscriptions, other)] == expected
 
 
 def test_a_late_joiner_gets_the_last_transient_local_sample(rig: Rig) -> None:
@@ -125,7 +138,7 @@ def test_the_publisher_restarts(rig: Rig) -> None:
 
 
 def test_the_publisher_restarts_with_other_qos(rig: Rig) -> None:
-    """The route takes the QoS of the publisher that is there now."""
+    """Beyond the bridge there is what the publisher that is there now offers."""
     rig.bridge(ONE_WAY)
     witness = rig.participant("B")
     offers = [DEEP, Qos(reliability="best_effort", depth=64), LATCHED.with_depth(64)]
@@ -142,7 +155,6 @@ def test_the_publisher_restarts_with_other_qos(rig: Rig) -> None:
         assert _send(publisher, 1) == rig.receive(subscription)
         publisher.close()
         subscription.close()
-    assert sum("changed to" in line for line in rig.said) == 2
 
 
 def test_the_subscriber_restarts(rig: Rig) -> None:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import random
 from pathlib import Path
 
 import pytest
 
-from safety_island.bridge.config_file import AUTO, BridgeFile, QosWish, read_bridge_file
+from safety_island.bridge.config_file import AUTO, BridgeFile, Keep, QosWish, read_bridge_file
 from safety_island.errors import ConfigurationError
 
 EVERYTHING = """\
@@ -68,7 +69,9 @@ def test_reads_every_key(tmp_path: Path) -> None:
 def test_defaults(tmp_path: Path) -> None:
     file = _read(tmp_path, "topics: {a: {type: p/msg/T}}")
     assert (file.name, file.mode) == ("domain_bridge", "normal")
-    assert file.entries[0].qos == QosWish(history="keep_last", depth=10)
+    assert file.entries[0].qos == QosWish(history=None, depth=None)
+    assert (file.entries[0].keep, file.entries[0].delay_s) == (Keep(), 0.0)
+    assert file.notes == ()
     assert (file.entries[0].from_domain, file.entries[0].to_domain) == (None, None)
 
 
@@ -108,27 +111,28 @@ def test_anchors_may_be_shared(tmp_path: Path) -> None:
 
 
 REFUSED = [
-    ("", 1, "the file is empty"),
     ("- a\n", 1, "the bridge file is a list, expected a map"),
     ("a: [\n", 2, "not YAML"),
     ("topics: {a: {type: p/msg/T}}\n---\ntopics: {}\n", 2, "not YAML: but found another document"),
-    ("name: x\n", 1, "no 'topics'"),
-    ("topics:\n", 1, "'topics' is empty, expected a map"),
-    ("topics: {}\n", 1, "'topics' is empty: there is nothing"),
     ("topics: [a]\n", 1, "'topics' is a list, expected a map"),
     ("topics:\n  a: 3\n", 2, "topic 'a' is '3', expected a map"),
     ("topics:\n  a:\n", 2, "topic 'a' is empty, expected a map"),
     ("topics:\n  ? [a]\n  : {}\n", 2, "a key is a list, expected a word"),
     ("tpics: {a: {}}\n", 1, "unknown key 'tpics' in the bridge file; did you mean 'topics'?"),
-    ("services: {a: {}}\n", 1, "unknown key 'services' in the bridge file; known: name,"),
+    ("servces: {a: {}}\n", 1, "unknown key 'servces' in the bridge file; did you mean 'services"),
+    ("what: {a: {}}\n", 1, "unknown key 'what' in the bridge file; known: name,"),
     ("mode: normal\nmode: normal\ntopics: {}\n", 2, "key 'mode' stands twice"),
     ("mode: compres\ntopics: {}\n", 1, "mode is 'compres', expected normal or compress"),
-    ("mode: 1\ntopics: {}\n", 1, "mode is '1', expected a string"),
+    ("mode: 1\ntopics: {}\n", 1, "mode is '1', expected normal or compress"),
+    ("mode: 'a\n\n  b'\ntopics: {}\n", 1, "mode is 'a b', expected normal"),
     ("name: my-bridge\ntopics: {a: {type: p/msg/T}}\n", 1, "name is 'my-bridge'"),
-    ("from_domain: 233\ntopics: {a: {type: p/msg/T}}\n", 1, "from_domain is 233, expected a DDS"),
-    ("to_domain: -1\ntopics: {a: {type: p/msg/T}}\n", 1, "to_domain is -1"),
+    ("from_domain: 233\ntopics: {a: {type: p/msg/T}}\n", 1, "from_domain is '233', expected a"),
+    ("to_domain: -1\ntopics: {a: {type: p/msg/T}}\n", 1, "to_domain is '-1'"),
+    ("to_domain: '-1'\ntopics: {a: {type: p/msg/T}}\n", 1, "to_domain is '-1'"),
+    ("to_domain: !!int x\ntopics: {a: {type: p/msg/T}}\n", 1, "to_domain is 'x'"),
+    (f"to_domain: {'9' * 5000}\ntopics: {{}}\n", 1, f"to_domain is '{'9' * 60}' and more"),
     ("to_domain: yes\ntopics: {a: {type: p/msg/T}}\n", 1, "to_domain is 'yes', expected a DDS"),
-    ("to_domain: '2'\ntopics: {a: {type: p/msg/T}}\n", 1, "to_domain is '2', expected a DDS"),
+    ("to_domain: 'two'\ntopics: {a: {type: p/msg/T}}\n", 1, "to_domain is 'two', expected a"),
     ("topics:\n  a:\n    from_domain: 1\n", 2, "topic 'a' has no 'type'"),
     ("topics:\n  a:\n    type: T\n", 3, "type is 'T', expected package/msg/Name"),
     ("topics:\n  a:\n    type: p/srv/T\n", 3, "type is 'p/srv/T', expected package/msg/Name"),
@@ -136,6 +140,10 @@ REFUSED = [
     ("topics:\n  a: {type: p/msg/T,\n type: p/msg/T}\n", 3, "key 'type' stands twice"),
     ("topics:\n  a: {type: p/msg/T, reversed: 1}\n", 2, "reversed is '1', expected true or false"),
     ("topics:\n  a: {type: p/msg/T, bidirectional: both}\n", 2, "bidirectional is 'both'"),
+    ("topics:\n  a: {type: p/msg/T, reversed: !!bool 3}\n", 2, "reversed is '3', expected true"),
+    ("topics:\n  a: {type: p/msg/T, delay: -1}\n", 2, "delay is '-1', expected milliseconds"),
+    ("topics:\n  a: {type: p/msg/T, publisher: x y}\n", 2, "publisher is 'x y', expected a node"),
+    ("topics:\n  a: {type: p/msg/T, second_publisher: first}\n", 2, "did you mean 'keep_first'?"),
     ("topics:\n  a: {type: p/msg/T, remap: [b]}\n", 2, "remap is a list, expected a string"),
     ("topics:\n  a: {type: p/msg/T, remap: }\n", 2, "remap is empty, expected a string"),
 ]
@@ -145,12 +153,12 @@ REFUSED_QOS = [
     ("{reliability: reliabel}", "reliability is 'reliabel', expected reliable or best_effort"),
     ("{durability: persistent}", "durability is 'persistent', expected volatile or"),
     ("{history: keep_first}", "did you mean 'keep_last'?"),
-    ("{depth: 0}", "depth is 0, expected samples to keep: a whole number from 1"),
+    ("{depth: -1}", "depth is '-1', expected samples to keep: a whole number from 0"),
     ("{depth: 1.5}", "depth is '1.5', expected samples to keep"),
     ("{depth: many}", "depth is 'many', expected samples to keep"),
     ("{deadline: soon}", "deadline is 'soon', expected nanoseconds (negative: infinite) or 'auto'"),
     ("{lifespan: 0.5}", "lifespan is '0.5', expected nanoseconds"),
-    ("{lifespan: 9223372036854775808}", "lifespan is 9223372036854775808"),
+    ("{lifespan: 9223372036854775808}", "lifespan is '9223372036854775808'"),
     ("{liveliness: manual}", "liveliness is 'manual', expected automatic or manual_by_topic"),
     ("{liveliness_lease_duration: auto}", "liveliness_lease_duration is 'auto', expected nano"),
 ]
@@ -185,3 +193,87 @@ def test_a_file_that_is_no_text(tmp_path: Path) -> None:
     path.write_bytes(b"\xff\xfe\x00")
     with pytest.raises(ConfigurationError, match="not UTF-8 text"):
         read_bridge_file(str(path))
+
+
+@pytest.mark.parametrize("text", ["", "# nothing\n", "name: x\n", "topics:\n", "topics: {}\n"])
+def test_a_file_without_topics_is_noted(tmp_path: Path, text: str) -> None:
+    file = _read(tmp_path, text)
+    assert file.entries == ()
+    assert file.notes == (f"{tmp_path}/bridge.yaml: no topics in this file, it forwards nothing",)
+
+
+@pytest.mark.parametrize("section", ["services", "actions"])
+def test_what_is_not_bridged_is_noted_and_the_topics_count(tmp_path: Path, section: str) -> None:
+    file = _read(
+        tmp_path, f"{section}:\n  a: {{type: p/srv/T}}\ntopics: {{a: {{type: p/msg/T}}}}\n"
+    )
+    assert len(file.entries) == 1
+    assert file.notes == (f"{tmp_path}/bridge.yaml:2: {section} are not bridged, only topics are",)
+
+
+def test_quotes_make_no_difference(tmp_path: Path) -> None:
+    """As for yaml-cpp, which reads the files of ROS 2's program."""
+    text = """topics:
+      "a":
+        type: 'p/msg/T'
+        from_domain: "1"
+        to_domain: '2'
+        reversed: "True"
+        bidirectional: 'no'
+        qos: {depth: "3", lifespan: '4', deadline: "auto", reliability: "reliable"}
+    """
+    entry = _read(tmp_path, text).entries[0]
+    assert (entry.from_domain, entry.to_domain) == (1, 2)
+    assert (entry.reversed, entry.bidirectional) == (True, False)
+    assert (entry.qos.depth, entry.qos.lifespan, entry.qos.deadline) == (3, 4, AUTO)
+
+
+def test_system_defaults(tmp_path: Path) -> None:
+    """ROS 2 takes a depth of 0 for the middleware's default, which is 1 with CycloneDDS."""
+    text = "topics: {a: {type: p/msg/T, qos: {liveliness: system_default, depth: 0}}}"
+    assert _read(tmp_path, text).entries[0].qos == QosWish(liveliness=None, depth=1)
+
+
+@pytest.mark.parametrize(
+    ("text", "keep"),
+    [
+        ("second_publisher: keep_first", Keep("", "keep_first")),
+        ("second_publisher: silent", Keep("", "silent")),
+        ("publisher: /a/b_c", Keep("/a/b_c")),
+        ("publisher: 0123456789ABCDEF0123456789abcdef", Keep("0123456789abcdef" * 2)),
+        (
+            "publisher: 01.10.1f.01.74.12.2c.8c.30.46.c7.06.00.00.06.03.00.00.00.00.00.00.00.00",
+            Keep("01101f0174122c8c3046c70600000603"),
+        ),
+    ],
+)
+def test_the_publisher_that_a_topic_keeps_to(tmp_path: Path, text: str, keep: Keep) -> None:
+    file = _read(tmp_path, f"topics:\n  a:\n    type: p/msg/T\n    delay: 250\n    {text}\n")
+    assert (file.entries[0].keep, file.entries[0].delay_s) == (keep, 0.25)
+
+
+@pytest.mark.parametrize("opening", ["[", "{a: ", "- ", "? "])
+def test_brackets_without_end_are_one_line(tmp_path: Path, opening: str) -> None:
+    with pytest.raises(ConfigurationError) as caught:
+        _read(tmp_path, "name: x\ntopics:\n  " + opening * 2000)
+    message = str(caught.value)
+    assert f"{tmp_path}/bridge.yaml:3: more than 32 levels of lists and maps" in message
+    assert "\n" not in message
+
+
+def test_what_refers_to_itself_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(ConfigurationError, match="unknown key 'a' in topic 'a'"):
+        _read(tmp_path, "topics: &t {a: *t}")
+
+
+def test_no_text_is_a_fault_of_ours(tmp_path: Path) -> None:
+    """Files that were cut, mixed up and torn are read, or refused in one line."""
+    chance = random.Random(70)
+    pieces = [*EVERYTHING.splitlines(keepends=True), "[", "}", "*a", "&a ", "!!int ", "\t", "<<: "]
+    pieces += ["\x00", "\ud7ff", "? ", "- ", "|\n", "'", "%YAML 9\n", "---\n", "...\n", "\ufeff"]
+    for _ in range(300):
+        text = "".join(chance.choices(pieces, k=chance.randrange(1, 25)))
+        try:
+            _read(tmp_path, text[: chance.randrange(len(text) + 1)])
+        except ConfigurationError as refused:
+            assert "\n" not in str(refused)

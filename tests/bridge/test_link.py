@@ -58,21 +58,6 @@ def test_waits_for_a_subscription_alone(rig: Rig) -> None:
     rig.until(lambda: bridge.all_open)
 
 
-def test_a_chain_opens_for_a_subscription_at_its_end(rig: Rig) -> None:
-    text = f"topics:\n  /t: {{type: {STEERING}, from_domain: A, to_domain: B}}\n"
-    text += f"  /t: {{type: {STEERING}, from_domain: B, to_domain: C}}\n"
-    bridge = rig.bridge(text, WaitFor(publisher=True, subscription=True, auto_remove=True))
-    publisher = rig.participant("A").publisher("/t", STEERING)
-    rig.settle()
-    assert not bridge.all_open
-    subscription = rig.participant("C").subscription("/t", STEERING)
-    rig.match(publisher, subscription)
-    assert publisher.write(SAMPLE)
-    assert rig.receive(subscription) == [SAMPLE]
-    subscription.close()
-    rig.until(lambda: bridge.totals()["open"] == 0)
-
-
 def test_waits_for_nobody(rig: Rig) -> None:
     bridge = rig.bridge(ONE_WAY, WaitFor(publisher=False))
     rig.turn()

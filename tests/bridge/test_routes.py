@@ -19,13 +19,14 @@ T = "type: p/msg/T"
 def plan(tmp_path: Path) -> Plan:
     """Plan the routes of texts, each a file of its own (a.yaml, b.yaml, ...)."""
 
-    def make(*texts: str, **overrides: object) -> list[Route]:
+    def make(*texts: str, notes: list[str] | None = None, **overrides: object) -> list[Route]:
         files = []
         for name, text in zip("abcd", texts, strict=False):
             path = tmp_path / f"{name}.yaml"
             path.write_text(text)
             files.append(read_bridge_file(str(path)))
-        return plan_routes(files, Overrides(**overrides))  # type: ignore[arg-type]
+        said = [] if notes is None else notes
+        return plan_routes(files, Overrides(**overrides), said.append)  # type: ignore[arg-type]
 
     return make
 
@@ -74,7 +75,6 @@ def test_several_files_each_with_its_own_defaults(plan: Plan) -> None:
     routes = plan(first, second)
     assert _ends(routes) == [(1, "/one/a", 2, "/one/a"), (3, "/two/a", 4, "/two/a")]
     assert [route.mode for route in routes] == ["compress", "normal"]
-    assert len({route.entry for route in routes}) == 2
 
 
 def test_the_same_topic_to_several_domains_and_names(plan: Plan) -> None:
@@ -120,14 +120,16 @@ TWINS = [
     (f"a: {{{T}, remap: b}}", f"a: {{{T}, remap: /b}}"),
     (f"a: {{{T}, remap: ~/b}}", f"a: {{{T}, remap: domain_bridge/b}}"),
     (f"a: {{{T}}}", f"a: {{{T}, from_domain: 2, to_domain: 1, reversed: true}}"),
-    (f"a: {{{T}, reversed: true}}", f"a: {{{T}, bidirectional: true}}"),
-    (f"a: {{{T}}}", "a: {type: p/msg/Other}"),
+    (f"a: {{{T}}}", f"a: {{{T}, remap: ''}}"),
+    (f"a: {{{T}}}", f"a: {{{T}, qos: {{depth: 3}}}}"),
 ]
 
 
 @pytest.mark.parametrize(("first", "second"), TWINS)
 @pytest.mark.parametrize("files", [1, 2])
-def test_equal_routes(plan: Plan, first: str, second: str, files: int) -> None:
+def test_an_entry_that_stands_there_already_is_noted_and_ignored(
+    plan: Plan, first: str, second: str, files: int
+) -> None:
     head = "from_domain: 1\nto_domain: 2\ntopics:\n"
     texts = (
         [f"{head}  {first}\n  {second}\n"]
@@ -135,20 +137,97 @@ def test_equal_routes(plan: Plan, first: str, second: str, files: int) -> None:
         else [head + f"  {e}" for e in (first, second)]
     )
     here, there = ("a.yaml:5", "a.yaml:4") if files == 1 else ("b.yaml:4", "a.yaml:4")
-    with pytest.raises(ConfigurationError) as caught:
-        plan(*texts)
-    assert f"/{here}: " in str(caught.value)
-    assert "is already forwarded by the entry at" in str(caught.value)
-    assert str(caught.value).endswith(f"/{there}")
+    notes: list[str] = []
+    routes = plan(*texts, notes=notes)
+    assert [str(route.where)[-8:] for route in routes] == ["a.yaml:4"]
+    assert len(notes) == 1
+    assert f"/{here}: " in notes[0]
+    assert f"is already forwarded by the entry at {routes[0].where}" in notes[0]
+    assert there in notes[0]
 
 
-LOOPS = {
+def test_of_an_entry_both_ways_the_direction_that_is_new_counts(plan: Plan) -> None:
+    text = f"from_domain: 1\nto_domain: 2\ntopics:\n  a: {{{T}, reversed: true}}\n"
+    notes: list[str] = []
+    routes = plan(f"{text}  a: {{{T}, bidirectional: true}}\n", notes=notes)
+    assert _ends(routes) == [(2, "/a", 1, "/a"), (1, "/a", 2, "/a")]
+    assert len(notes) == 1
+
+
+def test_two_types_for_one_route_are_refused(plan: Plan) -> None:
+    text = f"from_domain: 1\nto_domain: 2\ntopics:\n  a: {{{T}}}\n  a: {{type: p/msg/Other}}\n"
+    with pytest.raises(ConfigurationError, match=r"a\.yaml:5: .*as p/msg/T instead of p/msg/Other"):
+        plan(text)
+
+
+OPPOSITE = {
     "there and back": [f"a: {{{T}}}", f"a: {{{T}, from_domain: 2, to_domain: 1}}"],
     "there and back, reversed": [f"a: {{{T}}}", f"a: {{{T}, reversed: true}}"],
     "through a remap": [
         f"a: {{{T}, remap: b}}",
         f"b: {{{T}, from_domain: 2, to_domain: 1, remap: a}}",
     ],
+    "both ways and one more": [
+        f"a: {{{T}, bidirectional: true}}",
+        f"a: {{{T}, remap: b}}",
+        f"b: {{{T}, from_domain: 2, to_domain: 1, remap: a}}",
+    ],
+}
+
+
+@pytest.mark.parametrize("name", sorted(OPPOSITE))
+def test_opposite_directions_are_no_loop(plan: Plan, name: str) -> None:
+    """A bridge does not hear what it published itself, so they do what 'bidirectional' does."""
+    head = "from_domain: 1\nto_domain: 2\ntopics:\n"
+    routes = plan(head + "".join(f"  {entry}\n" for entry in OPPOSITE[name]))
+    ends = _ends(routes)
+    assert all((*end[2:], *end[:2]) in ends for end in ends)
+
+
+REFERENCE = """\
+name: my_bridge
+from_domain: 2
+to_domain: 3
+topics:
+  clock:
+    type: rosgraph_msgs/msg/Clock
+  chatter:
+    type: example_interfaces/msg/String
+    qos:
+      reliability: best_effort
+  chatter:
+    type: example_interfaces/msg/String
+    to_domain: 4
+  chatter:
+    type: example_interfaces/msg/String
+    reversed: True
+  chatter:
+    type: example_interfaces/msg/String
+    from_domain: 7
+    to_domain: 8
+    bidirectional: True
+  chatter:
+    type: example_interfaces/msg/String
+    remap: chitter
+"""
+
+
+def test_a_file_with_all_that_the_reference_shows(plan: Plan) -> None:
+    """Forward, to a second domain, reversed, both ways, remapped."""
+    notes: list[str] = []
+    assert _ends(plan(REFERENCE, notes=notes)) == [
+        (2, "/clock", 3, "/clock"),
+        (2, "/chatter", 3, "/chatter"),
+        (2, "/chatter", 4, "/chatter"),
+        (3, "/chatter", 2, "/chatter"),
+        (7, "/chatter", 8, "/chatter"),
+        (8, "/chatter", 7, "/chatter"),
+        (2, "/chatter", 3, "/chitter"),
+    ]
+    assert notes == []
+
+
+LOOPS = {
     "through three domains": [
         f"a: {{{T}}}",
         f"a: {{{T}, from_domain: 2, to_domain: 3}}",
@@ -158,11 +237,6 @@ LOOPS = {
         f"a: {{{T}, bidirectional: true}}",
         f"a: {{{T}, from_domain: 2, to_domain: 3, bidirectional: true}}",
         f"a: {{{T}, from_domain: 3, to_domain: 1, bidirectional: true}}",
-    ],
-    "both ways and one more": [
-        f"a: {{{T}, bidirectional: true}}",
-        f"a: {{{T}, remap: b}}",
-        f"b: {{{T}, from_domain: 2, to_domain: 1, remap: a}}",
     ],
 }
 
@@ -176,17 +250,24 @@ def test_loops(plan: Plan, name: str) -> None:
 
 def test_a_loop_over_two_files_names_both(plan: Plan) -> None:
     first = f"topics:\n  a: {{{T}, from_domain: 1, to_domain: 2}}"
-    second = f"topics:\n\n  a: {{{T}, from_domain: 2, to_domain: 1}}"
+    second = f"topics:\n\n  a: {{{T}, from_domain: 2, to_domain: 3}}\n"
+    second += f"  a: {{{T}, from_domain: 3, to_domain: 1}}"
     with pytest.raises(ConfigurationError) as caught:
         plan(first, second)
-    assert "b.yaml:3: /a domain 2 -> 1 closes a loop with /a domain 1 -> 2" in str(caught.value)
+    assert "b.yaml:4: /a domain 3 -> 1 closes a loop with /a domain 1 -> 2" in str(caught.value)
     assert "a.yaml:2" in str(caught.value)
-    assert "bidirectional: true" in str(caught.value)
+
+
+def test_an_empty_remap_is_none(plan: Plan) -> None:
+    text = f"topics:\n  a: {{{T}, from_domain: 1, to_domain: 2, remap: ''}}"
+    assert _ends(plan(text)) == [(1, "/a", 2, "/a")]
 
 
 @pytest.mark.parametrize("name", ["a b", "1a", "a//b", "a/", "a__b", "{node}/a", ""])
 def test_names_that_ros_does_not_allow(plan: Plan, name: str) -> None:
     with pytest.raises(ConfigurationError, match=r"a\.yaml:2: topic name .* is not legal"):
         plan(f"topics:\n  '{name}': {{{T}, from_domain: 1, to_domain: 2}}")
+    if not name:
+        return  # as a remap it is none
     with pytest.raises(ConfigurationError, match=r"a\.yaml:2: topic name .* is not legal"):
         plan(f"topics:\n  a: {{{T}, from_domain: 1, to_domain: 2, remap: '{name}'}}")

@@ -9,9 +9,10 @@ import pytest
 
 from safety_island.bridge.config_file import read_bridge_file
 from safety_island.bridge.routes import Route, plan_routes
+from safety_island.cli.demo.children import bridge_file
 from safety_island.dds.config import URI, DdsConfig
 from safety_island.dds.participant import Participant
-from safety_island.dds.topics import BRIDGED
+from safety_island.dds.topics import BRIDGED, CONTROL
 from safety_island.errors import ConfigurationError
 
 DEMO = Path(__file__).parents[2] / "demo"
@@ -43,9 +44,30 @@ def test_the_shipped_file_is_the_table_of_topics() -> None:
     assert sum(route.source[0] == 1 for route in routes) == 5
 
 
-def test_the_shipped_file_matches_the_publishers() -> None:
+def test_the_shipped_file_states_the_qos_of_the_table() -> None:
+    table = {topic.name: topic.qos for topic in BRIDGED}
     for route in _routes(SHIPPED):
-        assert (route.qos.reliability, route.qos.durability, route.mode) == (None, None, "normal")
+        qos = table[route.source[1]]
+        assert (route.qos.reliability, route.qos.durability) == (qos.reliability, qos.durability)
+        assert route.qos.depth == (1 if qos.durability == "transient_local" else None)
+        assert route.mode == "normal"
+
+
+def test_the_shipped_file_keeps_to_one_publisher_of_the_command() -> None:
+    seconds = {route.source[1]: route.keep.second for route in _routes(SHIPPED)}
+    assert seconds.pop(CONTROL.name) == "keep_first"
+    assert set(seconds.values()) == {"forward"}
+
+
+def test_the_demo_bridges_as_the_shipped_file_does(tmp_path: Path) -> None:
+    demo = tmp_path / "demo.yaml"
+    demo.write_text(bridge_file((1, 2)))
+
+    def facts(path: Path) -> list[tuple[object, ...]]:
+        found = [(r.source, r.target, r.type_name, r.qos, r.keep) for r in _routes(path)]
+        return sorted(found, key=str)
+
+    assert facts(demo) == facts(SHIPPED)
 
 
 def _setting(domain: str, *names: str) -> list[str | None]:

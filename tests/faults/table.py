@@ -9,9 +9,13 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "faults.md"
-ROWS = (*range(1, 52), *range(67, 78), 91, 94)
+ROWS = (*range(1, 52), *range(67, 78), *range(83, 87), 91, 94)
 """Rows of the catalogue that this campaign covers."""
-ELSEWHERE = (ROOT / "tests/can/test_fault_rows.py", ROOT / "tests/can/test_dbc.py")
+ELSEWHERE = (
+    ROOT / "tests/can/test_fault_rows.py",
+    ROOT / "tests/can/test_dbc.py",
+    ROOT / "tests/live/test_behind_bridge.py",
+)
 
 HEAD = """\
 # Faults: what is survived, and the test that shows it
@@ -114,6 +118,14 @@ FAULTS: dict[int, tuple[str, str, str]] = {
     75: ("restart of the bridge", "nothing old counts; its clock may be another", "A"),
     76: ("loop of bridges", "exit code 2, file and line", "start"),
     77: ("mode that toggles", "followed, no output jumps", "1 tick"),
+    83: ("publisher of weaker QoS joins behind the bridge", "those who were heard are heard", "0"),
+    84: ("publisher gone behind the bridge", "as on the island's own domain", "lease 1 s"),
+    85: (
+        "command from before a silence",
+        "no late reader receives it, on either domain",
+        "lease 1 s",
+    ),
+    86: ("rogue command behind the island", "not forwarded, alarm", "1 sample"),
     91: (
         "told to end, or the planned end, with CAN alone",
         "hold, declared stop, then exit code 0; a lost reader of its output ends nothing",

@@ -218,10 +218,11 @@ def test_row_75_a_new_main_compute_may_have_another_clock(period_s: float, skew_
 def test_row_76_a_bridge_that_closes_a_loop_does_not_start(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Forth in one entry and back in another; every shape of loop: tests/bridge/test_routes.py."""
+    """Through a third domain; every shape of loop: tests/bridge/test_routes.py."""
     path = tmp_path / "loop.yaml"
     entry = "  {0}: {{type: std_msgs/msg/Header, from_domain: {1}, to_domain: {2}, remap: {3}}}\n"
-    path.write_text("topics:\n" + entry.format("a", 1, 2, "b") + entry.format("b", 2, 1, "a"))
+    steps = [entry.format(*step) for step in (("a", 1, 2, "b"), ("b", 2, 3, "c"), ("c", 3, 1, "a"))]
+    path.write_text("topics:\n" + "".join(steps))
     assert main(["bridge", str(path)]) == 2
     told = capsys.readouterr().err
-    assert f"{path}:3: /b domain 2 -> 1 as /a closes a loop with" in told
+    assert f"{path}:4: /c domain 3 -> 1 as /a closes a loop with" in told

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
 from safety_island.control.status import Mode
 from safety_island.dds import topics
@@ -34,10 +35,17 @@ POINTS = make_points([(x - 5.0, 0.0, 1.0) for x in range(60)])
 class Driver:
     """Publishes every input but the ``absent`` ones; the mode when it changes, as Autoware does.
 
-    ``speed`` [m/s] NaN: odometry that is no number. ``ahead_ns``: of the clock of its stamps.
+    ``entries``: on which topics there is a publisher at all. ``speed`` [m/s] NaN: odometry that is
+    no number. ``ahead_ns``: of the clock of its stamps.
     """
 
-    def __init__(self, domain: int, mode: Mode = Mode.AUTONOMOUS) -> None:
+    def __init__(
+        self,
+        domain: int,
+        mode: Mode = Mode.AUTONOMOUS,
+        *,
+        entries: Iterable[TopicEntry] = topics.INPUTS,
+    ) -> None:
         self.speed = 1.0
         self.ahead_ns = 0
         self.absent: set[TopicEntry] = set()
@@ -45,10 +53,11 @@ class Driver:
         self._participant = Participant(domain, DdsConfig(interface="lo"), "main_compute")
         self._publishers = {
             entry: self._participant.publisher(entry.name, entry.type_name, entry.qos)
-            for entry in topics.INPUTS
+            for entry in entries
         }
         self._due = -math.inf
-        self.tell(mode)
+        if topics.OPERATION_MODE in self._publishers:
+            self.tell(mode)
 
     def tell(self, mode: Mode) -> None:
         """Publish an operation mode."""

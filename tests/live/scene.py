@@ -78,6 +78,10 @@ class Scene:
         """Send a signal."""
         self._running[name].send_signal(number)
 
+    def log(self, name: str) -> str:
+        """What a process has printed so far."""
+        return self._folder.joinpath(f"{name}.log").read_text("utf-8")
+
     def arm(self) -> tuple[int, str]:
         """Run ``island arm``; return its exit code and all that the command ever said."""
         self._folder.joinpath("arm.log").unlink(missing_ok=True)

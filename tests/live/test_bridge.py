@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import time
 
 import pytest
@@ -52,3 +53,17 @@ def _comes_back(drive: Scene) -> None:
     drive.moves()
     stamps_ns = sent_since(drive.main.heard[topics.CONTROL], restarted_ns)
     assert min(stamps_ns) > restarted_ns
+
+
+def test_a_bridge_that_stood_still_forwards_again(drive: Scene) -> None:
+    """It stood for longer than its lease: everybody has left and come back meanwhile."""
+    for _ in range(2):
+        drive.signal(BRIDGE, signal.SIGSTOP)
+        _is_silent_until_autonomous_mode_is_left(drive)
+        time.sleep(2.0)
+        stood_ns = time.time_ns()
+        drive.signal(BRIDGE, signal.SIGCONT)
+        drive.state(State.ACTIVE)
+        drive.moves()
+        assert min(sent_since(drive.main.heard[topics.CONTROL], stood_ns)) > stood_ns
+    assert "lost" not in drive.log(BRIDGE)

@@ -11,6 +11,7 @@ from typing import Any, Protocol
 
 from safety_island.bridge.config_file import DEFAULT_NAME
 from safety_island.bridge.link import Link, Say, WaitFor
+from safety_island.bridge.outlet import Counts
 from safety_island.bridge.routes import Route
 from safety_island.dds.config import DdsConfig
 from safety_island.dds.participant import Participant
@@ -18,12 +19,19 @@ from safety_island.dds.wait_group import WaitGroup
 
 LONGEST_WAIT_S = 0.1
 """After at most this time [s] the bridge sees that it is told to stop."""
-SEARCH_S, WATCH_S = 0.05, 0.25
-"""Times [s] between looks at who is there: while a route is not open yet, and later."""
+LOOK_S, HOLDING_S = 0.05, 0.01
+"""Times [s] between looks at who is there: usually, and while a new publisher holds samples."""
 REPORT_S = 1.0
+STALL_S, CATCH_UP_S = 0.2, 0.05
+"""When the process stood still for this time [s], the library gets some time to receive all that
+has come meanwhile, so that only the newest of it is forwarded, and nothing that has ended."""
 
 Report = Callable[[str, Mapping[str, Any]], None]
-"""Told an event and its values: ``counts`` once a second, ``route`` for each route at the end."""
+"""Called with an event and its values.
+
+``counts`` once a second, ``alarm`` when publishers of a route are not forwarded that it does not
+keep to, ``route`` for each route at the end.
+"""
 
 
 class StopEvent(Protocol):
@@ -51,7 +59,11 @@ class Bridge:
                 domain: stack.enter_context(Participant(domain, dds, f"{name}_{domain}"))
                 for domain in domains
             }
-            self._group = stack.enter_context(WaitGroup[Link]())
+            self._participants = list(found.values())
+            self._changes: list[int] = []
+            self._worked_at = time.monotonic()
+            self._alarms: list[Mapping[str, Any]] = []
+            self._group = stack.enter_context(WaitGroup[Link]()) if domains else None
             self.links = [
                 Link(
                     route,
@@ -60,21 +72,34 @@ class Bridge:
                     self._group,
                     wait_for or WaitFor(),
                     say,
+                    self._alarms.append,
                 )
                 for route in routes
+                if self._group is not None
             ]
-            _connect(self.links)
             stack.callback(self._close_links)
             self._stack = stack.pop_all()
 
     def look(self) -> None:
         """Open, change or close routes by who is there now."""
+        changes = [participant.changes() for participant in self._participants]
         for link in self.links:
-            link.look()
+            if changes != self._changes or link.is_unsettled:
+                link.look()
+        self._changes = changes
 
-    def forward(self, timeout_s: float) -> int:
-        """Wait at most ``timeout_s`` [s] for samples and forward all; return how many went out."""
-        return sum(link.forward() for link in self._group.wait(timeout_s))
+    def forward(self, timeout_s: float) -> None:
+        """Wait at most ``timeout_s`` [s] for samples and forward all."""
+        if self._group is None:
+            time.sleep(timeout_s)
+            return
+        ready = self._group.wait(timeout_s)
+        stood_still = time.monotonic() - self._worked_at > timeout_s + STALL_S
+        if stood_still:
+            time.sleep(CATCH_UP_S)
+        for link in self.links if stood_still else dict.fromkeys(ready):
+            link.forward(stood_still=stood_still)
+        self._worked_at = time.monotonic()
 
     def run(self, stop: StopEvent, report: Report | None = None, duration_s: float = 0.0) -> None:
         """Forward until ``stop`` is set, or for ``duration_s`` [s] when that is not 0."""
@@ -85,7 +110,9 @@ class Bridge:
         while not stop.is_set() and now < end:
             if now >= next_look:
                 self.look()
-                next_look = now + (WATCH_S if self.all_open else SEARCH_S)
+                is_holding = any(link.is_holding for link in self.links)
+                next_look = now + (HOLDING_S if is_holding else LOOK_S)
+                self._report_alarms(report)
             if report is not None and now >= next_report:
                 next_report += REPORT_S
                 report("counts", self.totals())
@@ -102,7 +129,7 @@ class Bridge:
     def totals(self) -> dict[str, int]:
         """Counts over all routes, how many are open and how many there are."""
         rows = [asdict(link.counts) for link in self.links]
-        sums = {name: sum(row[name] for row in rows) for name in rows[0]} if rows else {}
+        sums = {name: sum(row[name] for row in rows) for name in asdict(Counts())}
         opened = sum(link.is_open for link in self.links)
         return {**sums, "open": opened, "routes": len(self.links)}
 
@@ -121,6 +148,12 @@ class Bridge:
     ) -> None:
         self.close()
 
+    def _report_alarms(self, report: Report | None) -> None:
+        alarms, self._alarms[:] = list(self._alarms), []
+        if report is not None:
+            for alarm in alarms:
+                report("alarm", alarm)
+
     def _report_end(self, report: Report) -> None:
         report("counts", self.totals())
         for link in self.links:
@@ -131,16 +164,3 @@ class Bridge:
     def _close_links(self) -> None:
         for link in self.links:
             link.close()
-
-
-def _connect(links: Sequence[Link]) -> None:
-    """Tell each link its mirror and the links whose output it reads."""
-    for link in links:
-        for other in links:
-            if other is link or other.route.target != link.route.source:
-                continue
-            if other.route.entry == link.route.entry:
-                link.mirror = other
-            elif other.write_type == link.read_type:
-                link.feeders.append(other)
-                other.feeds.append(link)

@@ -1,6 +1,7 @@
 """The bridge file in the schema of ROS 2's ``domain_bridge``, checked to the last key.
 
-The same topic may stand in ``topics`` several times: each entry counts.
+The same topic may stand in ``topics`` several times: each entry counts. Three keys of a topic are
+ours: ``publisher``, ``second_publisher`` and ``delay``.
 """
 
 from __future__ import annotations
@@ -11,27 +12,37 @@ from typing import Any, Literal, cast
 
 import yaml
 
-from safety_island.bridge.section import Section, Where, load
+from safety_island.bridge.section import Section, Where, is_empty, load
 from safety_island.dds.config import MAX_DOMAIN_ID
 from safety_island.dds.qos import Durability, History, Liveliness, Reliability
 
 DEFAULT_NAME = "domain_bridge"
-DEFAULT_DEPTH = 10
 MAX_DEPTH = 100_000
+SYSTEM_DEPTH = 1
+"""Depth that ROS 2's CycloneDDS layer takes for 0, its "system default"."""
+MAX_DELAY_MS = 60_000
 AUTO: Literal["auto"] = "auto"
 """A duration that is taken from the publishers."""
 
 Mode = Literal["normal", "compress", "decompress"]
 MODES: tuple[Mode, ...] = ("normal", "compress", "decompress")
+SecondPublisher = Literal["forward", "keep_first", "silent"]
+SECOND_PUBLISHER: tuple[SecondPublisher, ...] = ("forward", "keep_first", "silent")
 
-_TOP = ("name", "from_domain", "to_domain", "mode", "topics")
-_TOPIC = ("type", "from_domain", "to_domain", "remap", "bidirectional", "reversed", "qos")
+_NOT_BRIDGED = ("services", "actions")
+_TOP = ("name", "from_domain", "to_domain", "mode", "topics", *_NOT_BRIDGED)
+_TOPIC = (
+    "type", "from_domain", "to_domain", "remap", "bidirectional", "reversed", "qos", "publisher",
+    "second_publisher", "delay",
+)  # fmt: skip
 _QOS = (
     "reliability", "durability", "history", "depth", "deadline", "lifespan", "liveliness",
     "liveliness_lease_duration",
 )  # fmt: skip
 _TYPE = re.compile(r"[A-Za-z]\w*/msg/[A-Za-z]\w*", re.ASCII)
 _NODE_NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
+_PUBLISHER = re.compile(r"(/[A-Za-z_]\w*)+|([0-9A-Fa-f]{2}[.:| ]?){16}([.:| ]?00)*", re.ASCII)
+_LIVELINESS = ("automatic", "manual_by_topic", "system_default")
 _NS_MAX = 2**63 - 1
 
 
@@ -41,12 +52,24 @@ class QosWish:
 
     reliability: Reliability | None = None
     durability: Durability | None = None
-    history: History = "keep_last"
-    depth: int = DEFAULT_DEPTH
+    history: History | None = None
+    depth: int | None = None
     deadline: int | Literal["auto"] | None = None
     lifespan: int | Literal["auto"] | None = None
     liveliness: Liveliness | None = None
     lease: int | None = None
+
+
+@dataclass(frozen=True)
+class Keep:
+    """To which publisher an entry keeps.
+
+    ``publisher`` is a node name (``/a/b``) or a GUID in 32 hexadecimal digits, empty for any;
+    ``second`` says what to do about more than one.
+    """
+
+    publisher: str = ""
+    second: SecondPublisher = "forward"
 
 
 @dataclass(frozen=True)
@@ -61,6 +84,8 @@ class Entry:
     bidirectional: bool
     reversed: bool
     qos: QosWish
+    keep: Keep
+    delay_s: float
     where: Where
 
 
@@ -72,11 +97,16 @@ class BridgeFile:
     name: str
     mode: Mode
     entries: tuple[Entry, ...]
+    notes: tuple[str, ...] = ()
+    """What a user should know: what stands in the file and is not bridged."""
 
 
 def read_bridge_file(path: str) -> BridgeFile:
     """Read a bridge file. Raises ConfigurationError that names file, line and what is allowed."""
-    top = Section(path, load(path), "the bridge file")
+    node = load(path)
+    if node is None:
+        return BridgeFile(path, DEFAULT_NAME, "normal", (), (_nothing(path),))
+    top = Section(path, node, "the bridge file")
     top.check_keys(_TOP)
     name = top.text("name")
     name = DEFAULT_NAME if name is None else name
@@ -84,20 +114,27 @@ def read_bridge_file(path: str) -> BridgeFile:
         top.place("name").refuse(f"name is '{name}', expected letters, digits and underscores")
     mode = cast(Mode, top.choice("mode", MODES) or "normal")
     defaults = _domain(top, "from_domain"), _domain(top, "to_domain")
-    entries = tuple(
-        _entry(path, key, where, node, defaults) for key, where, node in _topics(top).entries()
-    )
-    return BridgeFile(path, name, mode, entries)
+    topics = _topics(top)
+    found = () if topics is None else topics.entries()
+    entries = tuple(_entry(path, key, where, entry, defaults) for key, where, entry in found)
+    notes = [
+        f"{top.place(key)}: {key} are not bridged, only topics are"
+        for key in _NOT_BRIDGED
+        if top.node(key) is not None
+    ]
+    notes += [] if entries else [_nothing(path)]
+    return BridgeFile(path, name, mode, entries, tuple(notes))
 
 
-def _topics(top: Section) -> Section:
+def _nothing(path: str) -> str:
+    return f"{path}: no topics in this file, it forwards nothing"
+
+
+def _topics(top: Section) -> Section | None:
     node = top.node("topics")
-    if node is None:
-        top.where.refuse("no 'topics' in the bridge file: there is nothing to forward")
-    topics = Section(top.path, node, "'topics'")
-    if not any(True for _ in topics.entries()):
-        topics.where.refuse("'topics' is empty: there is nothing to forward")
-    return topics
+    if node is None or is_empty(node):
+        return None
+    return Section(top.path, node, "'topics'")
 
 
 def _entry(
@@ -116,12 +153,27 @@ def _entry(
         type_name=type_name,
         from_domain=defaults[0] if given[0] is None else given[0],
         to_domain=defaults[1] if given[1] is None else given[1],
-        remap=section.text("remap"),
+        remap=section.text("remap") or None,
         bidirectional=section.flag("bidirectional") or False,
         reversed=section.flag("reversed") or False,
         qos=_qos(path, section.node("qos"), topic),
+        keep=_keep(section),
+        delay_s=(section.number("delay", 0, MAX_DELAY_MS, "milliseconds") or 0) / 1000.0,
         where=where,
     )
+
+
+def _keep(section: Section) -> Keep:
+    publisher = section.text("publisher") or ""
+    if publisher and not _PUBLISHER.fullmatch(publisher):
+        section.place("publisher").refuse(
+            f"publisher is '{publisher}', expected a node name such as /safety_island, or a GUID"
+            " of 32 hexadecimal digits"
+        )
+    if publisher and not publisher.startswith("/"):
+        publisher = re.sub("[^0-9a-f]", "", publisher.lower())[:32]
+    second = cast(SecondPublisher | None, section.choice("second_publisher", SECOND_PUBLISHER))
+    return Keep(publisher, second or "forward")
 
 
 def _domain(section: Section, key: str) -> int | None:
@@ -136,12 +188,14 @@ def _qos(path: str, node: yaml.Node | None, topic: str) -> QosWish:
     chosen: dict[str, Any] = {
         "reliability": section.choice("reliability", ("reliable", "best_effort")),
         "durability": section.choice("durability", ("volatile", "transient_local")),
-        "history": section.choice("history", ("keep_last", "keep_all")) or "keep_last",
-        "liveliness": section.choice("liveliness", ("automatic", "manual_by_topic")),
+        "history": section.choice("history", ("keep_last", "keep_all")),
+        "liveliness": section.choice("liveliness", _LIVELINESS),
     }
-    depth = section.number("depth", 1, MAX_DEPTH, "samples to keep")
+    if chosen["liveliness"] == "system_default":
+        chosen["liveliness"] = None
+    depth = section.number("depth", 0, MAX_DEPTH, "samples to keep")
     return QosWish(
-        depth=DEFAULT_DEPTH if depth is None else depth,
+        depth=SYSTEM_DEPTH if depth == 0 else depth,
         deadline=_duration(section, "deadline"),
         lifespan=_duration(section, "lifespan"),
         lease=_nanoseconds(section, "liveliness_lease_duration"),

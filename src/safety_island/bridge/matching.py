@@ -1,75 +1,62 @@
-"""Which QoS a route takes: what its entry asks for, else what fits every publisher it finds."""
+"""The QoS of both ends of a route for its publishers: what the entry asks for, else theirs."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import Literal, NamedTuple
+from typing import Literal
 
 from safety_island.bridge.config_file import AUTO, QosWish
-from safety_island.dds.qos import Durability, Qos, Reliability
+from safety_island.dds.mismatch import incompatible_policies
+from safety_island.dds.qos import Qos
+
+DEFAULT_DEPTH = 10
+"""Samples that a route keeps for a reader that is slow, as in ROS 2."""
+NO_OFFER = Qos()
+"""What a route offers when it need not wait for a publisher and there is none."""
 
 
-class Match(NamedTuple):
-    """The policies of both ends of a route, and what a user should know about them."""
+def request(wish: QosWish, offer: Qos) -> Qos:
+    """Return what a subscription asks for to hear a publisher with all that it offers.
 
-    qos: Qos
-    warnings: tuple[str, ...] = ()
-
-
-def match(wish: QosWish, offers: Sequence[Qos]) -> Match:
-    """Return the QoS for a route whose publishers offer ``offers`` (none: reliable, volatile).
-
-    Where publishers differ, the weaker policy is taken, which hears all of them. A wish that some
-    publisher cannot meet is kept and told: that publisher will not be heard.
+    It keeps everything until it is taken: a depth would be shared by all publishers of the topic,
+    and one of them could push out what another one said.
     """
-    warnings: list[str] = []
-    qos = Qos(
-        reliability=wish.reliability or _reliability(offers, warnings),
-        durability=wish.durability or _durability(offers, warnings),
-        depth=wish.depth,
-        history=wish.history,
+    return Qos(
+        reliability=wish.reliability or offer.reliability,
+        durability=wish.durability or offer.durability,
+        history="keep_all",
+        deadline_ns=None if wish.deadline == AUTO else wish.deadline,
+        liveliness=wish.liveliness or "automatic",
+        lease_ns=wish.lease,
+    )
+
+
+def unmet(wish: QosWish, offer: Qos) -> list[str]:
+    """Name the policies for which a publisher offers less than the entry asks for."""
+    return incompatible_policies(offer, request(wish, offer))
+
+
+def offer_beyond(wish: QosWish, offers: Sequence[Qos]) -> Qos:
+    """Return what is offered in the target domain for publishers of the same durability.
+
+    Reliable when one of them is: that serves readers of both kinds. Never transient local when
+    they are not: a late reader would receive what its publisher did not mean to last. The depth of
+    what lasts is the publisher's.
+    """
+    first = offers[0] if offers else NO_OFFER
+    durability = wish.durability or first.durability
+    is_latched = durability == "transient_local"
+    is_reliable = any(offer.reliability == "reliable" for offer in offers or (NO_OFFER,))
+    return Qos(
+        reliability=wish.reliability or ("reliable" if is_reliable else "best_effort"),
+        durability=durability,
+        depth=wish.depth or (first.depth if is_latched else DEFAULT_DEPTH),
+        history=wish.history or (first.history if is_latched else "keep_last"),
         deadline_ns=_longest(wish.deadline, (offer.deadline_ns for offer in offers)),
         lifespan_ns=_longest(wish.lifespan, (offer.lifespan_ns for offer in offers)),
         liveliness=wish.liveliness or "automatic",
         lease_ns=wish.lease,
     )
-    for policy in unheard(qos, offers):
-        warnings.append(f"a publisher does not offer the {policy} that the bridge file asks for")
-    return Match(qos, tuple(warnings))
-
-
-def unheard(wanted: Qos, offers: Iterable[Qos]) -> list[str]:
-    """Names of the policies for which some publisher offers less than a reader asks for.
-
-    Source: the request-offered rules of DDS 1.4, section 2.2.3.
-    """
-    found = []
-    for offer in offers:
-        if wanted.reliability == "reliable" and offer.reliability == "best_effort":
-            found.append("reliability 'reliable'")
-        if wanted.durability == "transient_local" and offer.durability == "volatile":
-            found.append("durability 'transient_local'")
-        if wanted.liveliness == "manual_by_topic" and offer.liveliness == "automatic":
-            found.append("liveliness 'manual_by_topic'")
-        if _shorter(wanted.deadline_ns, offer.deadline_ns):
-            found.append("deadline")
-        if _shorter(wanted.lease_ns, offer.lease_ns):
-            found.append("liveliness_lease_duration")
-    return list(dict.fromkeys(found))
-
-
-def _reliability(offers: Sequence[Qos], warnings: list[str]) -> Reliability:
-    found = {offer.reliability for offer in offers}
-    if len(found) == 2:
-        warnings.append("only some publishers are reliable; taking best_effort to hear all")
-    return "best_effort" if "best_effort" in found else "reliable"
-
-
-def _durability(offers: Sequence[Qos], warnings: list[str]) -> Durability:
-    found = {offer.durability for offer in offers}
-    if len(found) == 2:
-        warnings.append("only some publishers are transient_local; taking volatile to hear all")
-    return "transient_local" if found == {"transient_local"} else "volatile"
 
 
 def _longest(wish: int | Literal["auto"] | None, offers: Iterable[int | None]) -> int | None:
@@ -81,5 +68,8 @@ def _longest(wish: int | Literal["auto"] | None, offers: Iterable[int | None]) -
     return max(finite) if finite and len(finite) == len(known) else None
 
 
-def _shorter(wanted: int | None, offered: int | None) -> bool:
-    return wanted is not None and (offered is None or offered > wanted)
+def room(wish: QosWish, offer: Qos) -> int | None:
+    """Samples of one publisher that may wait to be forwarded; None is any number."""
+    if offer.history == "keep_all":
+        return None
+    return wish.depth or max(offer.depth, DEFAULT_DEPTH)

@@ -42,7 +42,10 @@ def run(
     say = say or _print
     files = [read_bridge_file(path) for path in paths]
     overrides = Overrides(options.from_domain, options.to_domain, options.mode)
-    routes = plan_routes(files, overrides)
+    for file in files:
+        for line in file.notes:
+            say(line)
+    routes = plan_routes(files, overrides, say)
     for route in routes:
         say(f"{route}: waiting for {_awaited(options.wait_for)}")
     name = files[0].name

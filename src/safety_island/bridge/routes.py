@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from safety_island.bridge.config_file import BridgeFile, Entry, Mode, QosWish
+from safety_island.bridge.config_file import BridgeFile, Entry, Keep, Mode, QosWish
 from safety_island.bridge.section import Where
 from safety_island.dds.names import dds_topic_name
 from safety_island.errors import ConfigurationError
 
 End = tuple[int, str]
 """A domain id and an absolute topic name."""
+Note = Callable[[str], None]
+"""Called with one line that a user should know."""
 
 
 @dataclass(frozen=True)
@@ -33,8 +35,15 @@ class Route:
     mode: Mode
     qos: QosWish
     where: Where
-    entry: int
-    """Number of the entry; both directions of a bidirectional entry share it."""
+    keep: Keep
+    delay_s: float
+
+    def is_opposite_of(self, other: Route) -> bool:
+        """Whether it leads back from the other one's target to its source.
+
+        That is no loop: a bridge does not hear what it published itself.
+        """
+        return self.source == other.target and self.target == other.source
 
     def __str__(self) -> str:
         (from_domain, topic), (to_domain, out) = self.source, self.target
@@ -42,22 +51,27 @@ class Route:
         return f"{topic} {arrow}" if topic == out else f"{topic} {arrow} as {out}"
 
 
-def plan_routes(files: Sequence[BridgeFile], overrides: Overrides | None = None) -> list[Route]:
-    """Return every route of all files, in order.
+def plan_routes(
+    files: Sequence[BridgeFile], overrides: Overrides | None = None, note: Note = lambda _: None
+) -> list[Route]:
+    """Return every route of all files, in order; one that stands there already is noted, once.
 
-    Raises ConfigurationError for a domain that is missing, the same domain on both ends, two equal
-    routes, or entries that together lead samples back to where they came from.
+    Raises ConfigurationError for a domain that is missing, the same domain on both ends, two types
+    for one route, or three entries and more that lead samples back to where they came from.
     """
-    routes: list[Route] = []
+    found: dict[tuple[End, End], Route] = {}
     for file in files:
         for entry in file.entries:
-            routes += _routes_of(entry, len(routes), file, overrides or Overrides())
-    _refuse_twins(routes)
+            for route in _routes_of(entry, file, overrides or Overrides()):
+                first = found.setdefault((route.source, route.target), route)
+                if first is not route:
+                    _note_twin(route, first, note)
+    routes = list(found.values())
     _refuse_loops(routes)
     return routes
 
 
-def _routes_of(entry: Entry, number: int, file: BridgeFile, overrides: Overrides) -> list[Route]:
+def _routes_of(entry: Entry, file: BridgeFile, overrides: Overrides) -> list[Route]:
     """The route of an entry, and the other direction of a bidirectional one.
 
     As in ROS 2, both directions read the entry's topic and write its ``remap``.
@@ -75,10 +89,8 @@ def _routes_of(entry: Entry, number: int, file: BridgeFile, overrides: Overrides
     if entry.bidirectional:
         ends.append((ends[0][1], ends[0][0]))
     mode = overrides.mode or file.mode
-    return [
-        Route((start, topic), (end, out), entry.type_name, mode, entry.qos, entry.where, number)
-        for start, end in ends
-    ]
+    rest = entry.type_name, mode, entry.qos, entry.where, entry.keep, entry.delay_s
+    return [Route((start, topic), (end, out), *rest) for start, end in ends]
 
 
 def _pick(entry: Entry, end: str, option: int | None, given: int | None) -> int:
@@ -104,27 +116,23 @@ def _absolute(entry: Entry, name: str, bridge: str) -> str:
     return name
 
 
-def _refuse_twins(routes: Iterable[Route]) -> None:
-    seen: dict[tuple[End, End], Route] = {}
-    for route in routes:
-        first = seen.setdefault((route.source, route.target), route)
-        if first is not route:
-            route.where.refuse(f"{route} is already forwarded by the entry at {first.where}")
+def _note_twin(route: Route, first: Route, note: Note) -> None:
+    already = f"{route} is already forwarded by the entry at {first.where}"
+    if route.type_name != first.type_name:
+        route.where.refuse(f"{already}, as {first.type_name} instead of {route.type_name}")
+    note(f"{route.where}: {already}; this entry is ignored")
 
 
 def _refuse_loops(routes: Sequence[Route]) -> None:
-    """Refuse a way back to a route's source over other entries.
-
-    The two directions of one bidirectional entry are no loop: neither hears the other.
-    """
+    """Refuse a way back to a route's source that is not just its opposite direction."""
     for route in reversed(routes):
-        back = _way(route.target, route.source, [r for r in routes if r.entry != route.entry])
+        others = [other for other in routes if not other.is_opposite_of(route)]
+        back = _way(route.target, route.source, others)
         if back is not None:
             steps = ", ".join(f"{step} ({step.where})" for step in back)
-            hint = "; for both directions use one entry with 'bidirectional: true'"
             route.where.refuse(
-                f"{route} closes a loop with {steps}; samples would go round for ever"
-                + (hint if len(back) == 1 else "")
+                f"{route} closes a loop with {steps}; a bridge does not forward what it published"
+                " itself, and two bridges would send samples round for ever"
             )
 
 

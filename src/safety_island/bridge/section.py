@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
 from difflib import get_close_matches
 from pathlib import Path
-from typing import NoReturn, TypeVar
+from typing import NoReturn
 
 import yaml
 
 from safety_island.errors import ConfigurationError
 
-_TAGS = {
-    "str": "tag:yaml.org,2002:str",
-    "int": "tag:yaml.org,2002:int",
-    "bool": "tag:yaml.org,2002:bool",
+_SWITCH = {
+    **dict.fromkeys(("true", "yes", "on", "y"), True),
+    **dict.fromkeys(("false", "no", "off", "n"), False),
 }
+"""The words that ROS 2's program takes, quoted or not, in any case."""
+_WHOLE_NUMBER = re.compile(r"[+-]?[0-9]{1,20}", re.ASCII)
+MAX_NESTING = 32
+"""Levels of maps and lists; the deepest bridge file has five."""
+MAX_SHOWN = 60
 _KINDS: dict[type[yaml.Node], str] = {yaml.MappingNode: "a map", yaml.SequenceNode: "a list"}
-T = TypeVar("T", int, str, bool)
 
 
 class Where:
@@ -30,8 +34,8 @@ class Where:
         return self._text
 
     def refuse(self, problem: str) -> NoReturn:
-        """Raise ConfigurationError for this place."""
-        raise ConfigurationError(f"{self}: {problem}")
+        """Raise ConfigurationError for this place, in one line."""
+        raise ConfigurationError(f"{self}: {' '.join(problem.split())}")
 
 
 class Section:
@@ -72,20 +76,28 @@ class Section:
         return self.where if node is None else Where(self.path, node)
 
     def text(self, key: str) -> str | None:
-        """The value as a string."""
-        return self._scalar(key, "str", "a string", str)
+        """The value as a string, whether it is quoted or not."""
+        return self._scalar(key, "a string")
 
     def flag(self, key: str) -> bool | None:
         """The value as a boolean."""
-        return self._scalar(key, "bool", "true or false", bool)
+        expected = "true or false"
+        value = self._scalar(key, expected)
+        if value is None:
+            return None
+        if value.lower() not in _SWITCH:
+            self._refuse_value(key, expected)
+        return _SWITCH[value.lower()]
 
     def number(self, key: str, low: int, high: int, meaning: str) -> int | None:
         """The value as an integer from ``low`` to ``high``."""
         expected = f"{meaning}: a whole number from {low} to {high}"
-        value = self._scalar(key, "int", expected, int)
-        if value is not None and not low <= value <= high:
-            self.place(key).refuse(f"{key} is {value}, expected {expected}")
-        return value
+        value = self._scalar(key, expected)
+        if value is None:
+            return None
+        if not _WHOLE_NUMBER.fullmatch(value) or not low <= int(value) <= high:
+            self._refuse_value(key, expected)
+        return int(value)
 
     def choice(self, key: str, choices: tuple[str, ...]) -> str | None:
         """The value as one of several words."""
@@ -93,25 +105,32 @@ class Section:
         if value is not None and value not in choices:
             near = get_close_matches(value, choices, n=1)
             hint = f"; did you mean '{near[0]}'?" if near else ""
-            expected = " or ".join(choices)
-            self.place(key).refuse(f"{key} is '{value}', expected {expected}{hint}")
+            self._refuse_value(key, f"{' or '.join(choices)}{hint}")
         return value
 
-    def _scalar(self, key: str, tag: str, expected: str, kind: type[T]) -> T | None:
+    def _scalar(self, key: str, expected: str) -> str | None:
         node = self.node(key)
         if node is None:
             return None
-        if not isinstance(node, yaml.ScalarNode) or node.tag != _TAGS[tag]:
-            self.place(key).refuse(f"{key} is {describe(node)}, expected {expected}")
-        value = yaml.SafeLoader("").construct_object(node)
-        assert isinstance(value, kind)
-        return value
+        if not isinstance(node, yaml.ScalarNode) or is_empty(node):
+            self._refuse_value(key, expected)
+        return str(node.value)
+
+    def _refuse_value(self, key: str, expected: str) -> NoReturn:
+        node = self.node(key)
+        assert node is not None
+        self.place(key).refuse(f"{key} is {describe(node)}, expected {expected}")
 
 
-def load(path: str) -> yaml.Node:
-    """Return the one document of a file. Raises ConfigurationError when it is no YAML."""
+def load(path: str) -> yaml.Node | None:
+    """Return the one document of a file, None when there is none.
+
+    Raises ConfigurationError when it is no YAML.
+    """
     try:
-        node = yaml.compose(Path(path).read_text(encoding="utf-8"), Loader=yaml.SafeLoader)
+        text = Path(path).read_text(encoding="utf-8")
+        _check_nesting(path, text)
+        node: yaml.Node | None = yaml.compose(text, Loader=yaml.SafeLoader)
     except OSError as problem:
         reason = problem.strerror or str(problem)
         raise ConfigurationError(f"cannot read bridge file {path}: {reason}") from None
@@ -119,18 +138,36 @@ def load(path: str) -> yaml.Node:
         raise ConfigurationError(f"{path}: not UTF-8 text, expected a YAML file") from None
     except yaml.YAMLError as problem:
         raise ConfigurationError(f"{path}:{_line(problem)}: not YAML: {_reason(problem)}") from None
-    if node is None:
-        raise ConfigurationError(f"{path}:1: the file is empty, expected 'topics:' and its entries")
     return node
+
+
+def is_empty(node: yaml.Node) -> bool:
+    """Whether nothing stands behind a key."""
+    return isinstance(node, yaml.ScalarNode) and bool(node.tag.endswith(":null"))
 
 
 def describe(node: yaml.Node) -> str:
     """Say in words what stands in a file."""
     if not isinstance(node, yaml.ScalarNode):
         return _KINDS.get(type(node), "something else")
-    if node.tag.endswith(":null"):
+    if is_empty(node):
         return "empty"
-    return f"'{node.value}'"
+    value = str(node.value)
+    return f"'{value}'" if len(value) <= MAX_SHOWN else f"'{value[:MAX_SHOWN]}' and more"
+
+
+def _check_nesting(path: str, text: str) -> None:
+    """Refuse what would be too deep for the recursion of PyYAML's composer."""
+    depth = 0
+    for event in yaml.parse(text, Loader=yaml.SafeLoader):
+        depth += isinstance(event, yaml.CollectionStartEvent)
+        depth -= isinstance(event, yaml.CollectionEndEvent)
+        if depth > MAX_NESTING:
+            mark = event.start_mark
+            raise ConfigurationError(
+                f"{path}:{1 if mark is None else mark.line + 1}: more than {MAX_NESTING} levels of"
+                " lists and maps, expected a bridge file, which has five"
+            )
 
 
 def _key(path: str, node: yaml.Node) -> str:

@@ -20,7 +20,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
         """
 Forward topics from one DDS domain to another, as the file says (the schema of ROS 2's
 domain_bridge). Messages pass as bytes: no type needs to be known. A route opens when its publisher
-is there, takes over its reliability and durability, and never feeds its own output back.
+is there, with its reliability and durability; who comes later changes nothing for those who are
+there. A publisher that goes, and a message that is disposed, are gone beyond the bridge as well. A
+bridge does not forward what it published itself.
 """,
         (
             "island bridge demo/bridge/bridge-config.yaml",

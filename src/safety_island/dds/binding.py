@@ -36,6 +36,23 @@ class RawSample(NamedTuple):
     valid: bool
     source_timestamp_ns: int
     publication_handle: int
+    state: int = InstanceState.Alive
+    """What became of the topic's instance by now: an ``InstanceState``."""
+
+    @property
+    def is_alive(self) -> bool:
+        """Whether what was said last still counts."""
+        return self.state == InstanceState.Alive
+
+    @property
+    def is_disposed(self) -> bool:
+        """Whether a publisher has disposed what was said last."""
+        return self.state == InstanceState.NotAliveDisposed
+
+    @property
+    def is_orphaned(self) -> bool:
+        """Whether none of those who published is alive any more."""
+        return self.state == InstanceState.NotAliveNoWriters
 
 
 class RawEndpoint(NamedTuple):
@@ -47,6 +64,10 @@ class RawEndpoint(NamedTuple):
     type_name: str
     qos: Any
     alive: bool
+    handle: int = 0
+    """The ``publication_handle`` of its samples."""
+    lives: int = 0
+    """How often it had left before, as far as the library remembers."""
 
 
 def check_version() -> None:
@@ -68,7 +89,13 @@ def take(reader: int, limit: int) -> list[RawSample]:
     if isinstance(found, int):
         raise DdsError(f"taking samples failed: {strerror(found)}")
     return [
-        RawSample(data, info.valid_data, info.source_timestamp, info.publication_handle)
+        RawSample(
+            data,
+            info.valid_data,
+            info.source_timestamp,
+            info.publication_handle,
+            info.instance_state,
+        )
         for data, info in found
     ]
 
@@ -143,7 +170,16 @@ def _endpoint(
     _type_id: bytes | None,
 ) -> RawEndpoint:
     alive = info.valid_data and info.instance_state == InstanceState.Alive
-    return RawEndpoint(key, participant, topic or "", type_name or "", qos, alive)
+    return RawEndpoint(
+        key,
+        participant,
+        topic or "",
+        type_name or "",
+        qos,
+        alive,
+        info.instance_handle,
+        info.disposed_generation_count,
+    )
 
 
 def _qos_or_none(pointer: int) -> Any:

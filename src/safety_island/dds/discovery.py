@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from dataclasses import dataclass
 from typing import Any
 
@@ -38,6 +39,12 @@ class RemoteEndpoint:
     type_name: str
     qos: Qos
     type_hash: str = ""
+    handle: int = 0
+    """The ``publication_handle`` of its samples."""
+    number: int = 0
+    """How many endpoints were found before: one that left and came back has another number."""
+    lives: int = 0
+    """How often it had left before, as far as the library remembers."""
 
 
 class Endpoints:
@@ -47,12 +54,20 @@ class Endpoints:
         self._own = participant.guid.bytes
         self._reader = BuiltinDataReader(participant, kind)
         self._known: dict[bytes, RemoteEndpoint] = {}
+        self._found = 0
+        self._gone: deque[RemoteEndpoint] = deque(maxlen=_BATCH)
         self._changes = 0
 
     def on(self, topic: str) -> list[RemoteEndpoint]:
         """Return the live endpoints on a ROS topic, oldest first."""
         self._refresh()
         return [endpoint for endpoint in self._known.values() if endpoint.topic == topic]
+
+    def by_handle(self, handle: int) -> RemoteEndpoint | None:
+        """Return the endpoint of a handle, also one of those that left last."""
+        self._refresh()
+        known = (*self._known.values(), *reversed(self._gone))
+        return next((endpoint for endpoint in known if endpoint.handle == handle), None)
 
     def changes(self) -> int:
         """Count what came, changed or went so far."""
@@ -73,13 +88,20 @@ class Endpoints:
                 return
 
     def _note(self, event: binding.RawEndpoint) -> None:
-        if not event.alive:
-            self._known.pop(event.guid, None)
-        elif event.participant != self._own:
-            self._known[event.guid] = _endpoint(event)
+        known = self._known.get(event.guid)
+        if known is not None and not (event.alive and event.lives == known.lives):
+            self._gone.append(self._known.pop(event.guid))
+            known = None
+        elif known is None and not event.alive and event.topic:  # it left before anybody looked
+            self._found += 1
+            self._gone.append(_endpoint(event, self._found))
+        if event.alive and event.participant != self._own:
+            self._found += known is None
+            number = self._found if known is None else known.number
+            self._known[event.guid] = _endpoint(event, number)
 
 
-def _endpoint(event: binding.RawEndpoint) -> RemoteEndpoint:
+def _endpoint(event: binding.RawEndpoint, number: int) -> RemoteEndpoint:
     return RemoteEndpoint(
         guid=event.guid,
         participant=event.participant,
@@ -87,6 +109,9 @@ def _endpoint(event: binding.RawEndpoint) -> RemoteEndpoint:
         type_name=ros_type_name(event.type_name),
         qos=Qos() if event.qos is None else from_cyclone(event.qos),
         type_hash="" if event.qos is None else _type_hash(event.qos[Policy.Userdata]),
+        handle=event.handle,
+        number=number,
+        lives=event.lives,
     )
 
 

@@ -45,7 +45,8 @@ class Publisher:
         wanted = cyclone_qos(qos, type_hash_data(type_name), writer=True)
         self._writer: DataWriter[Any] = _create(DataWriter, participant, topic, wanted)
         self._ref: int = self._writer._ref
-        self._write = opaque.write if isinstance(topic, OpaqueTopic) else binding.write
+        layer = opaque if isinstance(topic, OpaqueTopic) else binding
+        self._write, self._dispose = layer.write, layer.dispose
         self._on_close = on_close
         self.guid: bytes = self._writer.guid.bytes
 
@@ -66,9 +67,9 @@ class Publisher:
     def withdraw(self) -> None:
         """Take back the last message: whoever subscribes later does not receive it.
 
-        Subscriptions that had it are told, without data. On a topic of a known type only.
+        Subscriptions that had it receive a notice without data.
         """
-        code = binding.dispose(self._ref)
+        code = self._dispose(self._ref)
         if code < 0:
             self.failed += 1
             self.last_error = binding.strerror(code)
@@ -125,6 +126,13 @@ class Subscription:
     def take_all(self) -> list[Sample]:
         """Return all samples since the last call, oldest first."""
         return [self._sample(raw) for raw in self._take()]
+
+    def take_raw(self) -> list[binding.RawSample]:
+        """Return all samples and notices since the last call, oldest first."""
+        taken: list[binding.RawSample] = []
+        while len(batch := self._raw(self._ref, _BATCH)) == _BATCH:
+            taken += batch
+        return taken + batch
 
     def matched(self) -> int:
         """Return how many publishers this subscription receives from now."""

@@ -27,6 +27,8 @@ _OPERATIONS = (ct.c_uint32 * 3)(_OP_ADDRESS_1_BYTE, 0, 0)
 _FIXED_SIZE = 1 << 3
 _XCDR1 = 1
 _DATA = 2
+_NO_CONTENT = bytes(1)
+"""A sample of the stand-in type."""
 _BATCH = 64
 
 
@@ -85,6 +87,7 @@ _take_cdr = _function(
 )
 _sertype_of = _function("dds_get_entity_sertype", ct.c_int32, _entity, ct.POINTER(ct.c_void_p))
 _write_cdr = _function("dds_writecdr", ct.c_int32, _entity, ct.c_void_p)
+_dispose = _function("dds_dispose", ct.c_int32, _entity, ct.c_char_p)
 _from_bytes = _function(
     "ddsi_serdata_from_ser_iov",
     ct.c_void_p,
@@ -154,9 +157,21 @@ def write(writer: int, data: bytes) -> int:
     return code
 
 
+def dispose(writer: int) -> int:
+    """Dispose what a writer of a topic without key has sent; 0 or a negative return code."""
+    code: int = _dispose(writer, _NO_CONTENT)
+    return code
+
+
 def _sample(data: int | None, info: Any) -> RawSample:
     size = _size(data)
     memory = ct.create_string_buffer(size)
     _to_bytes(data, 0, size, memory)
     _release(data)
-    return RawSample(memory.raw, info.valid_data, info.source_timestamp, info.publication_handle)
+    return RawSample(
+        memory.raw,
+        info.valid_data,
+        info.source_timestamp,
+        info.publication_handle,
+        info.instance_state,
+    )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import TracebackType
 from typing import Any
 
@@ -20,13 +21,19 @@ from safety_island.dds.errors import DdsError
 from safety_island.dds.mismatch import why_not
 from safety_island.dds.names import dds_topic_name
 from safety_island.dds.opaque import OpaqueTopic
-from safety_island.dds.presence import PARTICIPANT_USER_DATA, check_node_name, presence
+from safety_island.dds.presence import (
+    PARTICIPANT_USER_DATA,
+    check_node_name,
+    nodes_of_writers,
+    presence,
+)
 from safety_island.dds.presence import QOS as PRESENCE_QOS
 from safety_island.dds.presence import TOPIC as PRESENCE_TOPIC
 from safety_island.dds.presence import TYPE as PRESENCE_TYPE
 from safety_island.dds.qos import DEFAULT, Qos
 from safety_island.dds.types import cyclone_type
 from safety_island.messages import registry
+from safety_island.messages.errors import DecodeError
 
 DEFAULT_NODE_NAME = "safety_island"
 
@@ -65,6 +72,9 @@ class Participant:
             kind: Endpoints(self._participant, kind) for kind in (PUBLICATIONS, SUBSCRIPTIONS)
         }
         self._presence = self._publisher(PRESENCE_TOPIC, PRESENCE_TYPE, PRESENCE_QOS)
+        self._nodes: Subscription | None = None
+        self._node_names: dict[bytes, dict[bytes, str]] = {}
+        """Node names by publisher, by participant."""
         self._announce()
 
     @property
@@ -104,9 +114,33 @@ class Participant:
         """Return the publishers of other participants on a ROS topic, whatever their type."""
         return self._found[PUBLICATIONS].on(topic)
 
+    def publication(self, handle: int) -> RemoteEndpoint | None:
+        """Return the publisher of a sample's ``publication_handle``, also when it has left."""
+        return self._found[PUBLICATIONS].by_handle(handle)
+
     def subscriptions(self, topic: str) -> list[RemoteEndpoint]:
         """Return the subscriptions of other participants on a ROS topic, whatever their type."""
         return self._found[SUBSCRIPTIONS].on(topic)
+
+    def node_of(self, endpoint: RemoteEndpoint) -> str:
+        """Return the full name of a publisher's ROS 2 node; empty when it is not known.
+
+        Anybody on the domain may call itself so.
+        """
+        if self._nodes is None:
+            found = self._topic(PRESENCE_TOPIC, PRESENCE_TYPE)
+            qos = replace(PRESENCE_QOS, history="keep_all")
+            self._nodes = Subscription(
+                self._participant, found, PRESENCE_TYPE, qos, lambda _: None, ignore_own=True
+            )
+        for sample in self._nodes.take_all():
+            try:
+                participant, nodes = nodes_of_writers(sample.data)
+            except DecodeError:
+                continue
+            self._node_names[participant] = nodes
+        names = (nodes.get(endpoint.guid) for nodes in self._node_names.values())
+        return next((name for name in names if name), "")
 
     needs_discovery = True
     """It takes some time to find the others in a domain."""
@@ -114,6 +148,10 @@ class Participant:
     def endpoint_changes(self) -> int:
         """Count the publishers of others that came, changed or went so far; cheap to ask."""
         return self._found[PUBLICATIONS].changes()
+
+    def changes(self) -> int:
+        """Count the publishers and subscriptions of others that came, changed or went so far."""
+        return sum(found.changes() for found in self._found.values())
 
     def writers(self, topic: str, type_name: str) -> frozenset[bytes]:
         """Return the live publishers of other participants on a ROS topic, by their GUIDs."""
@@ -139,6 +177,8 @@ class Participant:
             return
         self._closed = True
         endpoints: list[Publisher | Subscription] = [*self._publishers, *self._subscriptions]
+        if self._nodes is not None:
+            endpoints.append(self._nodes)
         for endpoint in (*endpoints, self._presence):
             endpoint.close()
         for kind in self._found.values():

@@ -33,6 +33,19 @@ def presence(
     return codec.encode(TYPE, message)
 
 
+def nodes_of_writers(data: bytes) -> tuple[bytes, dict[bytes, str]]:
+    """Return a participant's GUID and the full node name of each of its publishers.
+
+    Raises DecodeError for what is no ParticipantEntitiesInfo.
+    """
+    message = codec.decode(TYPE, data)
+    found = {}
+    for node in message["node_entities_info_seq"]:
+        name = f"{node['node_namespace'].rstrip('/')}/{node['node_name']}"
+        found.update({bytes(gid["data"]): name for gid in node["writer_gid_seq"]})
+    return bytes(message["gid"]["data"]), found
+
+
 def check_node_name(name: str, namespace: str) -> None:
     """Raise ConfigurationError for a node name or namespace that ROS 2 does not allow."""
     parts = [part for part in namespace.split("/") if part]

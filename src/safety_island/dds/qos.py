@@ -69,16 +69,25 @@ def cyclone_qos(qos: Qos, user_data: bytes, *, writer: bool, ignore_own: bool = 
 
 
 def from_cyclone(found: Any) -> Qos:
-    """Return the policies of a discovered endpoint; history is not announced by DDS."""
+    """Return the policies of a discovered endpoint.
+
+    DDS does not announce the history, except what a transient-local publisher keeps for those who
+    come later (``DurabilityService``; its default, and that of peers that say nothing, is 1).
+    """
     reliability = found[Policy.Reliability]
     durability = found[Policy.Durability]
     liveliness = found[Policy.Liveliness]
     manual = isinstance(liveliness, Policy.Liveliness.ManualByTopic)
     best_effort = reliability is None or reliability == Policy.Reliability.BestEffort
     volatile = durability is None or durability == Policy.Durability.Volatile
+    kept = None if volatile else found[Policy.DurabilityService]
+    depth = getattr(getattr(kept, "history", None), "depth", 1)
+    keeps_all = kept is not None and kept.history == Policy.History.KeepAll
     return Qos(
         reliability="best_effort" if best_effort else "reliable",
         durability="volatile" if volatile else "transient_local",
+        depth=max(depth, 1),
+        history="keep_all" if keeps_all else "keep_last",
         deadline_ns=_optional(found[Policy.Deadline], "deadline"),
         lifespan_ns=_optional(found[Policy.Lifespan], "lifespan"),
         liveliness="manual_by_topic" if manual else "automatic",

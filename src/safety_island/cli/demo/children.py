@@ -42,6 +42,9 @@ def bridge_file(domains: tuple[int, int]) -> str:
     lines = ["name: demo_bridge", f"from_domain: {main}", f"to_domain: {island}", "topics:"]
     for entry in BRIDGED:
         lines += [f"  {entry.name}:", f"    type: {entry.type_name}"]
+        depth = ", depth: 1" if entry.qos.durability == "transient_local" else ""
+        qos = f"reliability: {entry.qos.reliability}, durability: {entry.qos.durability}{depth}"
+        lines.append(f"    qos: {{{qos}}}")
         if entry.bridged is not None and entry.bridged[0] != MAIN_COMPUTE_DOMAIN:
-            lines.append("    reversed: true")
+            lines += ["    reversed: true", "    second_publisher: keep_first"]
     return "\n".join(lines) + "\n"
