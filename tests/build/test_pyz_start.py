@@ -76,7 +76,8 @@ def test_a_place_that_cannot_be_written_is_told(hello: Path, tmp_path: Path) -> 
     (tmp_path / "cache").write_text("a file")
     result = pyz_process.run(hello, tmp_path)
     assert result.returncode == 2
-    assert "cannot be unpacked" in result.stderr.splitlines()[-1]
+    assert "is not a folder but a file; name a folder of your own" in result.stderr
+    assert result.stderr.count("\n") == 1
 
 
 def test_a_folder_that_others_can_write_to_is_not_run(hello: Path, tmp_path: Path) -> None:

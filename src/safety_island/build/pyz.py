@@ -20,7 +20,13 @@ _MAIN = """\
 import private_folder
 from pyz_start import start
 
-start("{digest}", "{python}", "{machine}", program="{program}", trust=private_folder)
+start(
+    digest="{digest}",
+    python="{python}",
+    machine="{machine}",
+    program="{program}",
+    trust=private_folder,
+)
 """
 
 
