@@ -167,6 +167,58 @@ def test_environment_that_lost_its_python_is_replaced(with_uv: Door) -> None:
     assert with_uv.calls() == FIRST_USE
 
 
+def test_environment_of_an_older_door_is_replaced_too(with_uv: Door) -> None:
+    """It left no mark, and a stamp when it was done."""
+    with_uv.run()
+    (with_uv.root / ".venv" / "made-by-island").unlink()
+    (with_uv.root / ".venv" / "bin" / "python").unlink()
+    assert with_uv.run("run").stdout == "ran run\n"
+
+
+def refused(door: Door) -> str:
+    """The one line of the door, which left ``.venv`` and the package index alone."""
+    result = door.run("run")
+    assert (result.returncode, result.stdout, door.calls()) == (1, "", [])
+    return result.stderr
+
+
+@pytest.mark.parametrize("works", [True, False])
+def test_environment_of_somebody_else_is_neither_removed_nor_changed(
+    with_uv: Door, works: bool
+) -> None:
+    python = with_uv.root / ".venv" / "bin" / "python"
+    python.parent.mkdir(parents=True)
+    python.symlink_to(sys.executable if works else "/nowhere/python")
+    (with_uv.root / ".venv" / "precious").write_text("work of weeks")
+    before = sorted(with_uv.root.glob(".venv/**/*"))
+    venv = with_uv.root / ".venv"
+    assert refused(with_uv).startswith(f"island: error: {venv} was not made by ./island; move it")
+    assert sorted(with_uv.root.glob(".venv/**/*")) == before
+    assert (venv / "precious").read_text() == "work of weeks"
+
+
+def test_a_file_or_a_dead_link_in_place_of_the_environment_is_left(with_uv: Door) -> None:
+    venv = with_uv.root / ".venv"
+    venv.symlink_to("/nowhere")
+    assert "was not made by ./island" in refused(with_uv)
+    venv.unlink()
+    venv.write_text("mine")
+    assert "was not made by ./island" in refused(with_uv)
+    assert venv.read_text() == "mine"
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="gives files away, as only root may")
+def test_environment_of_another_user_is_left(with_uv: Door) -> None:
+    with_uv.run()
+    with_uv.calls()
+    venv = with_uv.root / ".venv"
+    (venv / "made-run").unlink()
+    (venv / "bin" / "python").unlink()
+    os.chown(venv, 4242, 4242)
+    assert f"{venv} belongs to another user; run ./island as that one" in refused(with_uv)
+    assert (venv / "bin" / "island").exists()
+
+
 def test_dev_brings_the_tests_too(with_uv: Door) -> None:
     assert with_uv.run("dev").returncode == 0
     assert "requirements-dev.lock" in with_uv.log.read_text()

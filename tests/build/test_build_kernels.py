@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import fcntl
 from pathlib import Path
 from typing import Any
 
@@ -110,6 +111,32 @@ def test_kernels_are_compiled_once() -> None:
     for name, ir in irs.items():
         assert f"@kernel.{name}(" in ir
         llvm.parse_assembly(ir)
+
+
+def test_a_build_that_finds_another_one_at_work_says_so_and_ends_at_a_limit(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It waited for ever, without a word."""
+    monkeypatch.setattr(kernel_compile, "ir_folder", lambda: tmp_path)
+    monkeypatch.setattr(kernel_compile, "LOCK_LIMIT_S", 0.5)
+    told: list[str] = []
+    with (tmp_path / "lock").open("w") as other:
+        fcntl.flock(other, fcntl.LOCK_EX)
+        with pytest.raises(BuildError, match=r"another process holds .*/lock for more than 0.5 s"):
+            kernel_irs(lambda name, index, count: told.append(name))
+    assert told == ["what another build compiles (at most 0.5 s)"]
+
+
+def test_a_lock_file_that_is_a_link_is_not_opened(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(kernel_compile, "ir_folder", lambda: tmp_path)
+    victim = tmp_path / "victim"
+    victim.write_text("precious")
+    (tmp_path / "lock").symlink_to(victim)
+    with pytest.raises(OSError, match="symbolic links"):
+        kernel_irs(quiet)
+    assert victim.read_text() == "precious"
 
 
 def test_a_record_that_a_machine_lays_out_differently_is_refused() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import zipfile
 from pathlib import Path
@@ -75,4 +76,37 @@ def test_a_place_that_cannot_be_written_is_told(hello: Path, tmp_path: Path) -> 
     (tmp_path / "cache").write_text("a file")
     result = pyz_process.run(hello, tmp_path)
     assert result.returncode == 2
-    assert "cannot be unpacked" in result.stderr.splitlines()[-1]
+    assert "is not a folder but a file; name a folder of your own" in result.stderr
+    assert result.stderr.count("\n") == 1
+
+
+def test_a_folder_that_others_can_write_to_is_not_run(hello: Path, tmp_path: Path) -> None:
+    """Whoever wrote into it would run code as this user."""
+    assert pyz_process.run(hello, tmp_path).returncode == 3
+    (folder,) = (tmp_path / "cache").iterdir()
+    folder.chmod(0o777)
+    result = pyz_process.run(hello, tmp_path)
+    assert (result.returncode, result.stdout) == (2, "")
+    assert result.stderr.startswith(f"island: error: {folder} can be written by others (mode 777);")
+    assert result.stderr.count("\n") == 1
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="gives files away, as only root may")
+@pytest.mark.parametrize("below", ["", "hello"])
+def test_a_folder_of_another_user_is_not_run(hello: Path, tmp_path: Path, below: str) -> None:
+    assert pyz_process.run(hello, tmp_path).returncode == 3
+    (folder,) = (tmp_path / "cache").iterdir()
+    os.chown(folder / below, 4242, 4242)
+    result = pyz_process.run(hello, tmp_path)
+    assert (result.returncode, result.stdout) == (2, "")
+    assert "belongs to user 4242, not to 0; name a folder of your own" in result.stderr
+
+
+def test_a_link_in_place_of_the_folder_is_not_followed(hello: Path, tmp_path: Path) -> None:
+    assert pyz_process.run(hello, tmp_path).returncode == 3
+    (folder,) = (tmp_path / "cache").iterdir()
+    folder.rename(tmp_path / "elsewhere")
+    folder.symlink_to(tmp_path / "elsewhere")
+    result = pyz_process.run(hello, tmp_path)
+    assert (result.returncode, result.stdout) == (2, "")
+    assert "is not a folder but a link" in result.stderr

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from safety_island.cli.main import main
-from safety_island.cli.run_report import RunReport, percentile, sample_ages, tick_values
+from safety_island.cli.run_report import RunReport, sample_ages, tick_values
 from safety_island.control.records import TRACE
 from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State
@@ -73,7 +73,9 @@ def test_report_counts() -> None:
     assert summary["missed_ticks"] == 2
     assert summary["refused_samples"] == 3
     assert summary["first_control_s"] == 1.25
-    assert summary["tick_s"] == {"median": 0.002, "p99": 0.004, "max": 0.004}
+    times = summary["tick_s"]
+    assert times["max"] == times["p99"] == 0.004
+    assert 0.002 <= times["median"] <= 0.002 * 1.01
 
 
 def test_values_of_a_tick() -> None:
@@ -92,13 +94,6 @@ def test_ages_count_from_the_sending() -> None:
     sample = SimpleNamespace(source_timestamp_ns=10**9)
     inputs: Any = [SimpleNamespace(name="a", taken=sample), SimpleNamespace(name="b", taken=None)]
     assert sample_ages(inputs, 3 * 10**9) == {"a": 2.0, "b": math.inf}
-
-
-def test_percentile_is_the_nearest_rank() -> None:
-    values = [float(value) for value in range(1, 101)]
-    assert [percentile(values, p) for p in (1, 50, 99, 100)] == [1.0, 50.0, 99.0, 100.0]
-    assert percentile([], 50) is None
-    assert percentile([7.0], 1) == 7.0
 
 
 @pytest.mark.parametrize(

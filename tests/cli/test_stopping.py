@@ -57,3 +57,20 @@ def test_handlers_are_put_back() -> None:
         start.disarm()
         start.disarm()
     assert signal.getsignal(signal.SIGTERM) is before
+
+
+BLOCKED = """
+import signal
+from safety_island.cli import main
+numbers = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+signal.pthread_sigmask(signal.SIG_BLOCK, numbers)
+main.main = lambda: print(sorted(signal.pthread_sigmask(signal.SIG_BLOCK, ()))) or 0
+from safety_island.__main__ import start
+start()
+"""
+
+
+def test_signals_that_a_parent_left_blocked_are_heard() -> None:
+    """It could not be ended."""
+    done = subprocess.run([sys.executable, "-c", BLOCKED], capture_output=True, text=True)
+    assert (done.stdout, done.stderr) == ("[]\n", "")

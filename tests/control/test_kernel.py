@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import fcntl
 import os
+import shutil
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -179,6 +182,87 @@ def test_compiled_code_is_found_on_disk(tmp_path: Path) -> None:
     assert python(code, SAFETY_ISLAND_CACHE=str(kernel.cache_folder().parent)) == ["True"]
 
 
+LOAD = """
+from safety_island.control.input_check import check_trajectory
+check_trajectory.prepare()
+cache = check_trajectory.call._cache
+hits, misses = (sum(s.values()) for s in (check_trajectory.call.stats.cache_hits,
+                                          check_trajectory.call.stats.cache_misses))
+print(hits, misses, check_trajectory.is_on_disk())
+"""
+"""Prints how often compiled code was loaded and compiled, and whether it is kept."""
+
+
+@pytest.fixture
+def kept(tmp_path: Path) -> Path:
+    """A cache of its own that holds one kernel."""
+    check_trajectory.prepare()
+    target = tmp_path / kernel.cache_folder().name
+    target.mkdir(mode=0o700)
+    for file in kernel.cache_folder().glob("*check_trajectory*"):
+        shutil.copy(file, target)
+    return target
+
+
+@needs_jit
+def test_code_that_is_there_is_loaded_though_another_process_holds_the_lock(kept: Path) -> None:
+    """One that stands still in the middle of a compilation kept every later start waiting."""
+    with (kept / "check_trajectory.lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        assert python(LOAD, SAFETY_ISLAND_CACHE=str(kept.parent)) == ["1", "0", "True"]
+
+
+@needs_jit
+@pytest.mark.slow
+def test_code_that_is_missing_is_compiled_at_once_though_another_holds_the_lock(
+    tmp_path: Path,
+) -> None:
+    folder = tmp_path / kernel.cache_folder().name
+    folder.mkdir(mode=0o700)
+    with (folder / "check_trajectory.lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        assert python(LOAD, SAFETY_ISLAND_CACHE=str(tmp_path))[2:] == ["False"]
+
+
+@needs_jit
+@pytest.mark.slow
+@pytest.mark.parametrize("ending", ["nbi", "nbc"])
+def test_a_damaged_file_is_made_anew(kept: Path, ending: str) -> None:
+    """What a power failure leaves."""
+    (file,) = kept.glob(f"*.{ending}")
+    file.write_bytes(file.read_bytes()[:40])
+    found = python(LOAD, SAFETY_ISLAND_CACHE=str(kept.parent))
+    assert found[2] == "True"
+    assert python(LOAD, SAFETY_ISLAND_CACHE=str(kept.parent)) == ["1", "0", "True"]
+
+
+@needs_jit
+@pytest.mark.skipif(os.geteuid() != 0, reason="becomes another user, as only root may")
+def test_code_in_a_folder_of_root_that_cannot_be_written_is_loaded(tmp_path: Path) -> None:
+    """As in an image that was prepared when it was made. A user without rights asks."""
+    code = (
+        "import os; from safety_island.control import kernel, kernel_cache as c;"
+        "os.setgid(4242); os.setuid(4242); c.place.cache_clear();"
+        "print(c.place().folder, kernel.is_kept(), c.place().note == '')"
+    )
+    with tempfile.TemporaryDirectory(prefix="island-", dir="/var/tmp") as root:
+        Path(root).chmod(0o755)
+        folder = Path(root) / kernel.cache_folder().name
+        folder.mkdir(mode=0o755)
+        (folder / "some.nbi").touch()
+        assert python(code, SAFETY_ISLAND_CACHE=root) == [str(folder), "False", "True"]
+
+
+@needs_jit
+def test_code_for_another_processor_does_not_count_as_there(kept: Path) -> None:
+    code = (
+        "from safety_island.control.input_check import check_trajectory as c; print(c.is_on_disk())"
+    )
+    place = {"SAFETY_ISLAND_CACHE": str(kept.parent)}
+    assert python(code, **place) == ["True"]
+    assert python(code, NUMBA_CPU_NAME="generic", **place) == ["False"]
+
+
 def test_plain_python_needs_no_compiler() -> None:
     """``SAFETY_ISLAND_JIT=0``: the same functions, and Numba is not even imported."""
     code = (
@@ -186,7 +270,8 @@ def test_plain_python_needs_no_compiler() -> None:
         "from safety_island.control import kernel;"
         "from safety_island.params import load_set;"
         "f.TrajectoryFollower(load_set('default'));"
+        "note = kernel.cache_note() == '';"
         "print(kernel.JIT, kernel.is_cached(), 'numba' in sys.modules,"
-        "all(e.call is e.python for e in kernel.ENTRIES))"
+        "all(e.call is e.python for e in kernel.ENTRIES), note)"
     )
-    assert python(code, SAFETY_ISLAND_JIT="0") == ["False", "True", "False", "True"]
+    assert python(code, SAFETY_ISLAND_JIT="0") == ["False", "True", "False", "True", "True"]

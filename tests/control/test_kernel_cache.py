@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import os
 import shutil
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,8 @@ from safety_island.errors import ConfigurationError
 
 pytest.importorskip("numba")
 CONTROL = Path(kernel.__file__).parent
+needs_root = pytest.mark.skipif(os.geteuid() != 0, reason="gives files away, as only root may")
+STRANGER = 4242
 
 
 def module(folder: Path) -> Any:
@@ -84,9 +87,11 @@ def test_the_place_is_chosen_by_the_environment(
         monkeypatch.delenv(name, raising=False)
     for name, value in variables.items():
         monkeypatch.setenv(name, str(tmp_path / value) if value else "")
-    folder = module(CONTROL).cache_folder()
+    monkeypatch.delenv("XDG_RUNTIME_DIR", raising=False)
+    folder, note = module(CONTROL).place()
     assert folder == tmp_path / expected / f"kernels-{key(CONTROL)}"
     assert folder.is_dir() and list(folder.iterdir()) == []
+    assert note == "" and folder.stat().st_mode & 0o777 == 0o700
 
 
 @pytest.fixture
@@ -98,18 +103,91 @@ def blocked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return file
 
 
-def test_a_place_that_cannot_be_written_is_replaced(
-    tmp_path: Path, blocked: Path, monkeypatch: pytest.MonkeyPatch
+@pytest.fixture
+def runtime(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The runtime folder of this user."""
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path / "run"))
+    return tmp_path / "run" / "safety-island"
+
+
+def test_a_place_that_cannot_be_written_is_replaced_by_the_users_own_and_told(
+    blocked: Path, runtime: Path
 ) -> None:
-    loaded = module(CONTROL)
-    monkeypatch.setattr(loaded.tempfile, "tempdir", str(tmp_path))
-    folder = loaded.cache_folder()
-    assert folder.parent.parent == tmp_path and folder.is_dir()
+    folder, note = module(CONTROL).place()
+    assert folder is not None and folder.parent == runtime and folder.is_dir()
+    assert note.startswith(f"{blocked / 'below'}") and "cannot be made: Not a directory" in note
+    assert f"compiled code is kept in {folder}" in note and "\n" not in note
 
 
-def test_no_place_at_all_is_told(blocked: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_place_at_all_is_told_and_nothing_is_left_in_a_shared_folder(
+    blocked: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv("XDG_RUNTIME_DIR", raising=False)
     loaded = module(CONTROL)
-    monkeypatch.setattr(loaded.tempfile, "tempdir", str(blocked))
-    with pytest.raises(ConfigurationError, match="SAFETY_ISLAND_CACHE") as told:
+    folder, note = loaded.place()
+    assert folder is None and "each start compiles it (set SAFETY_ISLAND_CACHE" in note
+    with pytest.raises(ConfigurationError, match="SAFETY_ISLAND_CACHE"):
         loaded.cache_folder()
-    assert str(blocked / "below") in str(told.value) and "\n" not in str(told.value)
+
+
+@pytest.fixture
+def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The folder of these sources, made."""
+    monkeypatch.setenv("SAFETY_ISLAND_CACHE", str(tmp_path / "cache"))
+    folder: Path = module(CONTROL).cache_folder()
+    return folder
+
+
+def test_a_folder_that_others_can_write_to_is_not_used_and_told(cache: Path, runtime: Path) -> None:
+    """Its files are pickles: who can write them runs code as this user."""
+    cache.chmod(0o777)
+    folder, note = module(CONTROL).place()
+    assert folder is not None and folder.parent == runtime
+    assert note.startswith(f"{cache} can be written by others (mode 777): ")
+
+
+@needs_root
+def test_a_folder_of_another_user_is_not_used_and_told(cache: Path, runtime: Path) -> None:
+    os.chown(cache, STRANGER, STRANGER)
+    folder, note = module(CONTROL).place()
+    assert folder is not None and folder.parent == runtime
+    assert note.startswith(f"{cache} belongs to user {STRANGER}, not to 0: ")
+
+
+@needs_root
+def test_a_file_of_another_user_in_it_is_not_loaded(cache: Path, runtime: Path) -> None:
+    planted = cache / "longitudinal.longitudinal_step-1.py311.nbi"
+    planted.write_bytes(b"")
+    os.chown(planted, STRANGER, STRANGER)
+    folder, note = module(CONTROL).place()
+    assert folder is not None and folder.parent == runtime
+    assert note.startswith(f"{planted} belongs to user {STRANGER}")
+
+
+@needs_root
+def test_a_runtime_folder_of_another_user_is_not_used_either(blocked: Path, runtime: Path) -> None:
+    runtime.parent.mkdir()
+    os.chown(runtime.parent, STRANGER, STRANGER)
+    folder, note = module(CONTROL).place()
+    assert folder is None and f"belongs to user {STRANGER}" in note
+
+
+def test_a_lock_file_that_is_a_link_is_not_opened(cache: Path, tmp_path: Path) -> None:
+    victim = tmp_path / "victim"
+    victim.write_text("precious")
+    loaded = module(CONTROL)
+    loaded.place()
+    (cache / "step.lock").symlink_to(victim)
+    with loaded.lock("step") as is_ours:
+        assert not is_ours
+    assert victim.read_text() == "precious"
+
+
+def test_one_process_at_a_time_has_the_lock_and_the_next_one_does_not_wait(cache: Path) -> None:
+    loaded = module(CONTROL)
+    with loaded.lock("step") as first, loaded.lock("step") as second, loaded.lock("other") as other:
+        assert (first, second, other) == (True, False, True)
+        assert loaded.lock_holder("step") == os.getpid()
+    with loaded.lock("step") as again:
+        assert again
+    assert loaded.lock_holder("step") is None

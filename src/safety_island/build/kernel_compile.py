@@ -10,10 +10,12 @@ import hashlib
 import os
 import subprocess
 import sys
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from importlib.metadata import version
 from pathlib import Path
+from typing import IO
 
 from safety_island.build import kernel_ir
 from safety_island.build.errors import BuildError
@@ -28,6 +30,8 @@ ENVIRONMENT = {
     "NUMBA_OPT": "0",  # optimised later, for the machine
     "PYTHONHASHSEED": "0",  # the same sources give the same bytes
 }
+LOCK_LIMIT_S, LOCK_POLL_S = 600.0, 0.2
+"""Longest wait [s] for another process that compiles the same, and between two looks."""
 COMPILER = ["-m", kernel_ir.__name__]
 """What Python runs to compile."""
 _OURS = ("NUMBA_", "SAFETY_ISLAND_KERNELS", "SAFETY_ISLAND_JIT")
@@ -43,9 +47,9 @@ def entries() -> list[kernel.Entry]:
 def kernel_irs(report: Report) -> dict[str, str]:
     """Return the IR of every entry by its name. Raises BuildError for one that does not compile."""
     folder = ir_folder()
-    folder.mkdir(parents=True, exist_ok=True)
+    folder.mkdir(mode=0o700, exist_ok=True)
     names = [entry.name for entry in entries()]
-    with _locked(folder):
+    with _locked(folder, report):
         missing = [name for name in names if not (folder / f"{name}.ll").exists()]
         if missing:
             compile_into(folder, missing, report)
@@ -104,8 +108,28 @@ def _environment() -> dict[str, str]:
 
 
 @contextmanager
-def _locked(folder: Path) -> Iterator[None]:
-    """Let one process compile; the next one waits, and finds the result."""
-    with (folder / "lock").open("w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
+def _locked(folder: Path, report: Report) -> Iterator[None]:
+    """Let one process compile; the next one says so, waits within a limit, and finds the result."""
+    descriptor = os.open(folder / "lock", os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o600)
+    with os.fdopen(descriptor, "w") as lock:
+        end = time.monotonic() + LOCK_LIMIT_S
+        is_told = False
+        while not _take(lock):
+            if time.monotonic() > end:
+                raise BuildError(
+                    f"another process holds {folder}/lock for more than {LOCK_LIMIT_S:g} s: end it "
+                    f"(fuser -v {folder}/lock), or set SAFETY_ISLAND_CACHE to another folder"
+                )
+            if not is_told:
+                report(f"what another build compiles (at most {LOCK_LIMIT_S:g} s)", 0, 1)
+                is_told = True
+            time.sleep(LOCK_POLL_S)
         yield
+
+
+def _take(lock: IO[str]) -> bool:
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    return True

@@ -10,15 +10,23 @@ import zipfile
 from collections.abc import Mapping
 from pathlib import Path
 
+from safety_island import private_folder
 from safety_island.build import pyz_start
 
 _SHEBANG = b"#!/usr/bin/env python3\n"
 _DATE = (1980, 1, 1, 0, 0, 0)  # the same inputs give the same bytes
 _MODE = 0o644 << 16
 _MAIN = """\
+import private_folder
 from pyz_start import start
 
-start(digest="{digest}", python="{python}", machine="{machine}", program="{program}")
+start(
+    digest="{digest}",
+    python="{python}",
+    machine="{machine}",
+    program="{program}",
+    trust=private_folder,
+)
 """
 
 
@@ -38,8 +46,10 @@ def write_pyz(path: Path, content: Mapping[str, bytes], program: str) -> None:
         machine=platform.machine(),
         program=program,
     )
-    starter = Path(pyz_start.__file__).read_bytes()
-    members = {"__main__.py": main.encode(), "pyz_start.py": starter}
+    members = {"__main__.py": main.encode()}
+    for module in (pyz_start, private_folder):
+        place = Path(str(module.__file__))
+        members[place.name] = place.read_bytes()
     members |= {f"{pyz_start.CONTENT}{name}": content[name] for name in sorted(content)}
     memory = io.BytesIO()
     memory.write(_SHEBANG)

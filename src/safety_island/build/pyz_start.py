@@ -1,6 +1,7 @@
 """The start of a self-contained island: unpacks what it carries, once, and runs it from there.
 
-Runs before anything else is there, so it uses the standard library alone.
+Runs before anything else is there, so it uses the standard library alone, and of the island the
+rule which folders can be trusted (``private_folder.py``, carried beside this file).
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ import sys
 import tempfile
 import zipfile
 from pathlib import Path
-from typing import NoReturn
+from typing import NoReturn, Protocol
 
 CONTENT = "content/"
 """Folder of the archive that is unpacked."""
@@ -22,7 +23,17 @@ COMPLETE = ".complete"
 """Written last: a folder without it is not used."""
 
 
-def start(digest: str, python: str, machine: str, program: str) -> NoReturn:
+class Trust(Protocol):
+    """The module ``private_folder``."""
+
+    def make_private(self, folder: Path) -> None:
+        """Make a folder for this user alone."""
+
+    def distrust(self, folder: Path) -> str:
+        """Say why another user could have changed what is in a folder."""
+
+
+def start(digest: str, python: str, machine: str, program: str, trust: Trust) -> NoReturn:
     """Run ``program`` (``module:function``) out of the archive that this process runs.
 
     ``digest`` names the content, ``python`` (``3.11``) and ``machine`` what it was built for.
@@ -30,7 +41,7 @@ def start(digest: str, python: str, machine: str, program: str) -> NoReturn:
     archive = Path(sys.argv[0]).absolute()
     _check(archive, python, machine)
     try:
-        folder = unpacked(archive, digest)
+        folder = unpacked(archive, digest, trust)
     except (OSError, zipfile.BadZipFile) as error:
         _fail(f"{archive} cannot be unpacked: {error}; name another place by SAFETY_ISLAND_CACHE")
     except KeyboardInterrupt:
@@ -43,15 +54,15 @@ def start(digest: str, python: str, machine: str, program: str) -> NoReturn:
     sys.exit(getattr(importlib.import_module(module), function)())
 
 
-def unpacked(archive: Path, digest: str) -> Path:
+def unpacked(archive: Path, digest: str, trust: Trust) -> Path:
     """Return the folder with the content, which is unpacked when it is not there yet."""
     folder = cache_folder() / f"island-{digest[:16]}"
+    trust.make_private(folder.parent)
+    if why := trust.distrust(folder if os.path.lexists(folder) else folder.parent):
+        _fail(f"{why}; name a folder of your own by SAFETY_ISLAND_CACHE")
     if (folder / COMPLETE).exists():
-        if folder.stat().st_uid not in (os.getuid(), 0):
-            _fail(f"{folder} belongs to another user; name another place by SAFETY_ISLAND_CACHE")
         return folder
     print(f"island: unpacking {archive.name} to {folder}, once", file=sys.stderr, flush=True)
-    folder.parent.mkdir(parents=True, exist_ok=True)
     unfinished = Path(tempfile.mkdtemp(prefix=f"{folder.name}-", dir=folder.parent))
     try:
         _extract(archive, unfinished)

@@ -7,7 +7,7 @@ import argparse
 from safety_island.cli import options
 from safety_island.cli.jsonlines import JsonLines
 from safety_island.cli.parser import teach
-from safety_island.cli.stopping import StopAtOnce, StopFlag
+from safety_island.cli.stopping import StopAtOnce
 from safety_island.cli.tell import tell, tell_lost
 
 SWITCH = {"true": True, "false": False}
@@ -62,6 +62,7 @@ bridge does not forward what it published itself.
         help="close a route again when what it waited for is gone (default: false)",
     )
     options.add_interface(parser)
+    options.add_realtime(parser)
     options.add_duration(parser, 0.0)
     options.add_json(parser, "counts, once a second,")
 
@@ -82,6 +83,7 @@ def execute(arguments: argparse.Namespace) -> int:
     with StopAtOnce() as start:
         from safety_island.bridge import BridgeOptions, run
         from safety_island.bridge.link import WaitFor
+        from safety_island.cli.bridge_service import BridgeService
         from safety_island.dds.config import DdsConfig
         from safety_island.platform import load
 
@@ -97,7 +99,7 @@ def execute(arguments: argparse.Namespace) -> int:
             dds=DdsConfig(interface=arguments.interface),
             duration_s=arguments.duration,
         )
-        stop = StopFlag()
+        stop = BridgeService(arguments.realtime, arguments.cpu)
         report = JsonLines(tell_lost).write if arguments.json else None
         with load("posix").on_stop(stop.set):
             start.disarm()

@@ -2,19 +2,16 @@
 
 By the RTPS rule, for every vendor, a participant holds UDP port 7400 + 250 * domain (discovery by
 multicast) or that plus 10 + 2 * index (by unicast), so a port that cannot be bound shows a domain
-in use. A lock file keeps two demos that start at the same moment apart, before either holds a port.
+in use. Two demos that start at the same moment are kept apart before that by a Unix
+socket with an abstract name: it is no file, belongs to the network namespace as the ports do, and
+goes with its process.
 """
 
 from __future__ import annotations
 
-import fcntl
-import os
 import socket
-import tempfile
 from collections.abc import Iterable, Iterator
 from contextlib import ExitStack, contextmanager
-from pathlib import Path
-from typing import IO
 
 from safety_island.cli.options import MAX_DOMAIN
 
@@ -61,12 +58,10 @@ def pairs_from(first: int, second: int) -> Iterator[tuple[int, int]]:
 
 
 def _lock(domain: int, held: ExitStack) -> bool:
-    """Take the lock file of a domain; it is let go when ``held`` closes."""
-    folder = Path(tempfile.gettempdir()) / f"safety-island-domains-{os.getuid()}"
-    folder.mkdir(exist_ok=True)
-    file: IO[str] = held.enter_context((folder / str(domain)).open("w"))
+    """Take the name of a domain; it is let go when ``held`` closes."""
+    name = held.enter_context(socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM))
     try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        name.bind(f"\0safety-island-domain-{domain}")
     except OSError:
         return False
     return True

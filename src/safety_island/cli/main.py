@@ -9,6 +9,7 @@ from collections.abc import Sequence
 
 from safety_island import __version__
 from safety_island.cli import streams
+from safety_island.cli.memory_limit import check_memory_limit
 from safety_island.cli.parser import Parser, UsageError, nearest
 from safety_island.cli.table import COMMANDS, Command, find, load
 from safety_island.cli.tell import tell
@@ -63,7 +64,9 @@ def dispatch(arguments: list[str]) -> int:
     module = load(command)
     parser = Parser(prog=f"island {command.name}")
     module.configure(parser)
-    return module.execute(parser.parse(arguments[1:]))
+    parsed = parser.parse(arguments[1:])
+    check_memory_limit(command.name, command.need)
+    return module.execute(parsed)
 
 
 def main(argv: Sequence[str] | None = None) -> int:

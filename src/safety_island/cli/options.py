@@ -33,6 +33,17 @@ def timeout_s(text: str) -> float:
     return _seconds(text, 0.01, 3600.0, "a time-out in seconds, for example 3")
 
 
+def cpu(text: str) -> str:
+    """Read which processor core the control thread runs on."""
+    from safety_island.errors import ConfigurationError
+    from safety_island.platform.posix.real_time import parse_cpu
+
+    try:
+        return parse_cpu(text)
+    except ConfigurationError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+
+
 def _seconds(text: str, low: float, high: float, meaning: str) -> float:
     try:
         value = float(text)
@@ -107,6 +118,25 @@ def add_timeout(parser: argparse.ArgumentParser, what: str) -> None:
         default=3.0,
         metavar="SECONDS",
         help=f"longest wait for {what} (default: 3)",
+    )
+
+
+def add_realtime(parser: argparse.ArgumentParser) -> None:
+    """Add ``--realtime`` and ``--cpu``."""
+    parser.add_argument(
+        "--realtime",
+        choices=("auto", "require", "off"),
+        default="auto",
+        help="fixed priority (SCHED_FIFO), a core and locked memory: auto takes what this user may "
+        "have and says what is missing, require ends the start without all of it (default: auto)",
+    )
+    parser.add_argument(
+        "--cpu",
+        type=cpu,
+        default="auto",
+        metavar="CORE",
+        help="core of the control thread with --realtime: a number, any (the system chooses), or "
+        "auto, an isolated one or one of the last (default: auto)",
     )
 
 

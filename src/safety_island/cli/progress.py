@@ -8,11 +8,16 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
 from multiprocessing import get_context
-from time import perf_counter
+from time import perf_counter, sleep
 from typing import TextIO
+
+from safety_island.platform.posix.process import end_with
 
 Report = Callable[[str, int, int], None]
 """Told the name of a kernel that is done, its index and the count."""
+LOCK_LIMIT_S = 60.0
+"""Longest wait [s] of one start for other processes that compile the same kernels."""
+LOCK_POLL_S = 0.2
 
 
 def prepare_kernels(on_demand: bool = False) -> None:
@@ -22,13 +27,16 @@ def prepare_kernels(on_demand: bool = False) -> None:
     compiled code is quick and leaves nothing on the screen. ``on_demand``: also those that only
     some uses need.
     """
-    if missing := _missing(on_demand):
+    missing = _missing(on_demand)
+    from safety_island.control import kernel
+
+    if note := kernel.cache_note():
+        _say(note)
+    if missing:
         started = perf_counter()
         with _display() as show:
             _compile(missing, show)
         _say(f"control kernels compiled in {perf_counter() - started:.0f} s")
-    from safety_island.control import kernel
-
     kernel.prepare()
 
 
@@ -44,11 +52,30 @@ def _missing(on_demand: bool) -> list[str]:
 
 
 def _compile(names: list[str], show: Report) -> None:
-    """Compile each kernel in a process of its own, as many at a time as there are cores."""
-    with ProcessPoolExecutor(os.cpu_count(), mp_context=get_context("spawn")) as pool:
-        running = [pool.submit(_compile_one, name) for name in names]
+    """Compile each kernel, in processes of their own when the code is kept for this one to load."""
+    from safety_island.control import kernel
+
+    if not kernel.is_kept():
+        for index, name in enumerate(names):
+            show(_compile_one(name), index, len(names))
+        return
+    end = perf_counter() + LOCK_LIMIT_S  # of the monotonic clock, which all processes share
+    with ProcessPoolExecutor(
+        os.cpu_count(),
+        mp_context=get_context("spawn"),
+        initializer=end_with,
+        initargs=(os.getpid(),),
+    ) as pool:
+        running = [pool.submit(_compile_kept, name, end) for name in names]
         for index, done in enumerate(as_completed(running)):
             show(done.result(), index, len(names))
+
+
+def _compile_kept(name: str, end: float) -> str:
+    """Compile a kernel, unless another process that does so stands still."""
+    if _wait_for_others(name, end):
+        _compile_one(name)
+    return name
 
 
 def _compile_one(name: str) -> str:
@@ -59,6 +86,30 @@ def _compile_one(name: str) -> str:
     entries = {item.name: item for item in kernel.ENTRIES + kernel.ON_DEMAND}
     entries[name].prepare()
     return name
+
+
+def _wait_for_others(name: str, end: float) -> bool:
+    """Wait until no other process compiles the kernel, and say so; False: it still did at ``end``.
+
+    What is then still missing is compiled by the process that needs it, and not kept.
+    """
+    from safety_island.control import kernel_cache
+
+    is_told = False
+    while True:
+        with kernel_cache.lock(name) as is_free:
+            if is_free:
+                return True
+        holder = kernel_cache.lock_holder(name)
+        who = f"process {holder}" if holder else "another process"
+        if perf_counter() > end:
+            _say(f"{who} still holds the lock of kernel {name}: compiling it for this run alone")
+            return False
+        if not is_told:
+            left = end - perf_counter()
+            _say(f"waiting at most {left:.0f} s for {who}, which compiles kernel {name}")
+            is_told = True
+        sleep(LOCK_POLL_S)
 
 
 @contextmanager

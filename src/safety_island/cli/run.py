@@ -44,6 +44,7 @@ second signal ends it at once.
         help="posix: this machine, on DDS; sim: virtual time and topics in memory, with a "
         "simulated vehicle on the s-curve (default: posix)",
     )
+    options.add_realtime(parser)
     options.add_duration(parser, 0.0)
     options.add_json(parser, "every tick")
     parser.add_argument("--log-json", action="store_true", help="log lines as JSON objects")

@@ -13,6 +13,7 @@ from safety_island.cli.process import seconds_since_start
 from safety_island.cli.progress import prepare_kernels
 from safety_island.cli.run_can import CanSide
 from safety_island.cli.run_report import RunReport
+from safety_island.cli.run_service import service
 from safety_island.cli.run_settings import RunSettings, run_settings
 from safety_island.cli.run_start import bring_up, thread_stacks
 from safety_island.cli.stopping import StopAtOnce
@@ -93,7 +94,7 @@ def _drive(run: Run, node: ControllerNode, trace: Records, can: CanSide, start: 
         from safety_island.cli.virtual import VirtualVehicle
 
         vehicle = VirtualVehicle(platform, node.transport, node.stop)
-    with node, platform.on_stop(node.stop):
+    with node, platform.on_stop(node.stop), service(platform, arguments, node):
         start.disarm()
         node.run(parameters.node.ctrl_period, arguments.duration or None)
         report.finish()

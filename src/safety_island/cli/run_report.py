@@ -8,15 +8,13 @@ from typing import Any, Protocol
 
 from safety_island.cli.jsonlines import JsonLines
 from safety_island.cli.run_can import CanSide
+from safety_island.cli.tick_times import TickTimes
 from safety_island.control.records import Records
 from safety_island.control.status import LongitudinalState, MpcStatus
 from safety_island.node import Outcome, TickReport
 from safety_island.node.input import Input
 from safety_island.node.input_set import InputSet
 from safety_island.platform import Clock, Logger
-
-TICK_TIMES = 100_000
-"""How many of the newest tick times the summary looks at."""
 
 
 class Observed(Protocol):
@@ -51,7 +49,7 @@ class RunReport:
         self._lines = lines
         self._can = can
         self._max_lateness_s = 0.0
-        self._times: list[float] = []
+        self._times = TickTimes()
 
     def __call__(self, report: TickReport) -> None:
         """Take one tick."""
@@ -72,10 +70,7 @@ class RunReport:
 
     def _take_published(self, report: TickReport) -> None:
         self.published += 1
-        if len(self._times) < TICK_TIMES:
-            self._times.append(report.tick_time_s)
-        else:
-            self._times[self.published % TICK_TIMES] = report.tick_time_s
+        self._times.add(report.tick_time_s)
         if self.first_control_s is None:
             self.first_control_s = self._since_start()
             self._node.logger.info(
@@ -86,7 +81,7 @@ class RunReport:
 
     def summary(self) -> dict[str, Any]:
         """Return the figures of the whole run; times in seconds."""
-        ordered = sorted(self._times)
+        times = self._times
         return {
             "can": self._can.summary() if self._can is not None else None,
             "ticks": self.ticks,
@@ -96,9 +91,9 @@ class RunReport:
             "first_control_s": self.first_control_s,
             "max_lateness_s": self._max_lateness_s,
             "tick_s": {
-                "median": percentile(ordered, 50),
-                "p99": percentile(ordered, 99),
-                "max": percentile(ordered, 100),
+                "median": times.quantile(50),
+                "p99": times.quantile(99),
+                "max": times.max_s if times.count else None,
             },
         }
 
@@ -116,14 +111,6 @@ class RunReport:
             self.skipped,
             median,
         )
-
-
-def percentile(ordered: list[float], percent: float) -> float | None:
-    """Return the nearest-rank percentile of sorted values; None when there is none."""
-    if not ordered:
-        return None
-    rank = -(-len(ordered) * percent // 100)
-    return ordered[max(int(rank), 1) - 1]
 
 
 def sample_ages(inputs: Sequence[Input], wall_ns: int) -> dict[str, float]:

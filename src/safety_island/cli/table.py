@@ -11,6 +11,8 @@ import argparse
 import importlib
 from typing import NamedTuple, Protocol, cast
 
+from safety_island.cli.memory_limit import Need
+
 
 class Command(NamedTuple):
     """One row: the module is named without ``safety_island.cli.``."""
@@ -18,24 +20,48 @@ class Command(NamedTuple):
     name: str
     module: str
     summary: str
+    need: Need | None = None
+    """The memory that it takes, where that is much."""
 
+
+_TWO_DOMAINS, _ONE_DOMAIN = Need(1100, 200), Need(750, 160)
+_ISLAND, _KERNELS = Need(1100, 300, kernels=True), Need(600, 300, kernels=True)
 
 COMMANDS = (
-    Command("demo", "demo", "Watch the island drive a vehicle: three processes, one live view."),
-    Command("run", "run", "Run the safety island."),
-    Command("status", "status", "Show what the island does, and why nothing is published."),
-    Command("arm", "arm", "Ask a silent island to send commands again."),
-    Command("bridge", "bridge", "Forward topics between two DDS domains."),
-    Command("main-compute", "main_compute", "Stand in for Autoware: a planner and a vehicle."),
-    Command("replay", "replay", "Feed recorded runs through the controllers and compare."),
-    Command("bench", "bench", "Measure the tick, or the way from odometry to command."),
+    Command(
+        "demo", "demo", "Watch the island drive a vehicle: three processes, one live view.", _ISLAND
+    ),
+    Command("run", "run", "Run the safety island.", _ISLAND),
+    Command(
+        "status", "status", "Show what the island does, and why nothing is published.", _ONE_DOMAIN
+    ),
+    Command("arm", "arm", "Ask a silent island to send commands again.", _ONE_DOMAIN),
+    Command("bridge", "bridge", "Forward topics between two DDS domains.", _TWO_DOMAINS),
+    Command(
+        "main-compute",
+        "main_compute",
+        "Stand in for Autoware: a planner and a vehicle.",
+        _ONE_DOMAIN,
+    ),
+    Command(
+        "replay", "replay", "Feed recorded runs through the controllers and compare.", _KERNELS
+    ),
+    Command("bench", "bench", "Measure the tick, or the way from odometry to command.", _ISLAND),
     Command("params", "params", "Show or check controller parameters."),
     Command("can", "can", "Watch, send and describe the CAN command frames."),
     Command("config", "config", "Show the configuration of a target."),
     Command("menuconfig", "menuconfig", "Choose the configuration of a target in a menu."),
-    Command("build", "build", "Build a target: kernels, C headers, one self-contained program."),
     Command(
-        "prepare", "prepare", "Compile the control kernels now, so that later starts are quick."
+        "build",
+        "build",
+        "Build a target: kernels, C headers, one self-contained program.",
+        _KERNELS,
+    ),
+    Command(
+        "prepare",
+        "prepare",
+        "Compile the control kernels now, so that later starts are quick.",
+        _KERNELS,
     ),
 )
 

@@ -10,16 +10,16 @@ version pin.
 
 from __future__ import annotations
 
-import fcntl
 import os
-import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from safety_island.control import aot
+
+if TYPE_CHECKING:
+    from safety_island.control.kernel_cache import Place
 
 _PLAIN = os.environ.get("SAFETY_ISLAND_JIT", "1") == "0"
 
@@ -45,12 +45,22 @@ def cache_folder() -> Path:
     return kernel_cache.cache_folder()
 
 
-@contextmanager
-def _one_at_a_time(name: str) -> Iterator[None]:
-    """Let one process compile an entry; the next one waits, and finds the result on disk."""
-    with (cache_folder() / f"{name}.lock").open("w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        yield
+def cache_note() -> str:
+    """Say why compiled kernels are not kept where they should be; empty when they are."""
+    return _place().note if JIT else ""
+
+
+def is_kept() -> bool:
+    """Whether there is a place to keep compiled kernels in."""
+    folder = _place().folder
+    return folder is not None and os.access(folder, os.W_OK)
+
+
+def _place() -> Place:
+    """Return where they are looked for; imports the compiler."""
+    from safety_island.control import kernel_cache
+
+    return kernel_cache.place()
 
 
 def _njit(**options: Any) -> Callable[[Any], Any]:
@@ -84,7 +94,9 @@ class Entry:
         self.python = function
         self.arguments = arguments
         self.call: Callable[..., int] = function
-        self._dispatcher = _njit(cache=True)(function) if JIT else None
+        self._dispatcher: Any = None
+        if JIT:
+            self._dispatcher = _njit(cache=_place().folder is not None)(function)
         (ON_DEMAND if on_demand else ENTRIES).append(self)
 
     def signature(self) -> tuple[Any, ...]:
@@ -98,9 +110,21 @@ class Entry:
         )
 
     def is_on_disk(self) -> bool:
-        """Whether compiled code of it was kept by this version of Python."""
-        version = f"py{sys.version_info.major}{sys.version_info.minor}"
-        return any(cache_folder().glob(f"*.{self.name}-*.{version}*.nbi"))
+        """Whether compiled code of it is kept for these sources, Python and processor."""
+        if not (index := self._index()):
+            return False
+        codegen = self._dispatcher.targetctx.codegen()
+        name = index.get(self._dispatcher._cache._index_key(self.signature(), codegen))
+        return name is not None and (cache_folder() / name).exists()
+
+    def _index(self) -> dict[Any, str] | None:
+        """Return Numba's list of the code that is kept; None when it cannot be read."""
+        files = getattr(getattr(self._dispatcher, "_cache", None), "_cache_file", None)
+        try:
+            index: dict[Any, str] = files._load_index() if files is not None else {}
+        except Exception:  # a damaged pickle may raise anything
+            return None
+        return index
 
     def prepare(self) -> None:
         """Compile, or load the compiled code from disk; then refuse any other argument type."""
@@ -109,10 +133,26 @@ class Entry:
         if LIBRARY is not None:
             self.call = aot.library(LIBRARY).function(self.name, self.arguments)
         elif self._dispatcher is not None:
-            with _one_at_a_time(self.name):
-                self._dispatcher.compile(self.signature())
+            self._load_or_compile()
             self._dispatcher.disable_compile()
             self.call = self._dispatcher
+
+    def _load_or_compile(self) -> None:
+        """Load without a lock what is on disk; never wait for another process that compiles."""
+        if self.is_on_disk():
+            try:
+                self._dispatcher.compile(self.signature())
+                return
+            except Exception:  # a damaged file; a fault of the kernel itself shows again below
+                self._dispatcher._cache.flush()
+        from safety_island.control import kernel_cache
+
+        with kernel_cache.lock(self.name) as is_ours:
+            if not is_ours:
+                self._dispatcher._cache.disable()
+            elif self._index() is None:
+                self._dispatcher._cache.flush()
+            self._dispatcher.compile(self.signature())
 
     def bind(self, *arrays: Any) -> Callable[..., int]:
         """Return the kernel with its leading arguments, which are records, given for good.

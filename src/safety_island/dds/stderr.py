@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import re
 import sys
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import IO
@@ -35,7 +34,7 @@ def captured_stderr() -> Iterator[Captured]:
     captured = Captured()
     sys.stderr.flush()
     saved = os.dup(_STDERR)
-    with tempfile.TemporaryFile() as collected:
+    with os.fdopen(os.memfd_create("stderr"), "w+b") as collected:
         os.dup2(collected.fileno(), _STDERR)
         try:
             yield captured
