@@ -86,12 +86,12 @@ the controllers see them; a trajectory without them is not touched, not in one b
 | a point beside the one before, not ahead of it | {NEAR:g} m | dropped; its speed stays if slower |
 | an orientation against the path before and behind | {MAX_YAW_OFF:g} rad | that of the path, \
 `YAW_REPLACED` |
-| stop points all at one place, the vehicle stands | {REACH:g} m | a path through it, speed zero |
+| stop points all at the place where the vehicle stands | {REACH:g} m | a path there, speed zero |
 
-The path's direction is that over {REACH:g} m, so noise of some millimetres does not count. When half
-of the orientations or more contradict the path, or it turns by more than a right angle in one point,
-none is replaced. Points at one place are refused (`COINCIDENT_POINTS`) while the vehicle moves, or
-when they are no stop points.
+The path's direction is that over {REACH:g} m, so noise of some millimetres does not count. When
+half of the orientations or more contradict the path, or it turns by more than a right angle in one
+point, none is replaced. Points at one place are refused (`COINCIDENT_POINTS`) while the vehicle
+moves or is elsewhere, or when they are no stop points.
 """
 
 

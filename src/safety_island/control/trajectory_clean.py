@@ -52,8 +52,11 @@ _MIXED = int(Refusal.MIXED_DIRECTION)
 
 @kernel
 def _merge(kept, other):
-    """Drop a point in favour of the one before: the slower speed counts."""
-    if abs(other.v) < abs(kept.v):
+    """Drop a point in favour of the one before: the slower speed counts, with its acceleration.
+
+    Of equal speeds the later acceleration counts, which is the one that leads on.
+    """
+    if abs(other.v) <= abs(kept.v):
         kept.v = other.v
         kept.acc = other.acc
 
@@ -204,12 +207,24 @@ def _extent(points, n):
 
 
 @kernel
-def _may_stand(points, n, speed):
-    """Whether points at one place tell a vehicle to stay where it stands already."""
+def _are_stop_points(points, n):
+    """Whether no point of a trajectory moves the vehicle."""
     fastest = 0.0
     for i in range(n):
         fastest = max(fastest, abs(points[i].v))
-    return n >= FEWEST_POINTS and fastest < STANDSTILL and abs(speed) < AT_REST
+    return n >= FEWEST_POINTS and fastest < STANDSTILL
+
+
+@kernel
+def _stands_at(params, point, inputs):
+    """Whether the vehicle stands, and near enough to a place to stay there."""
+    yaw = yaw_of(inputs.qx, inputs.qy, inputs.qz, inputs.qw)
+    off = normalize_angle(yaw_of(point.qx, point.qy, point.qz, point.qw) - yaw)
+    return (
+        abs(inputs.vx) < AT_REST
+        and distance_2d(point, inputs) <= params.emergency_state_traj_trans_dev
+        and abs(off) <= params.emergency_state_traj_rot_dev
+    )
 
 
 @kernel
@@ -234,16 +249,16 @@ def clean_trajectory(params, points, inputs, cleaned, n):
     """Clean ``points[:n]``, of which ``check_trajectory`` said NEEDS_CLEANING; a Refusal.
 
     ``cleaned`` says how many points are left, and how many orientations were replaced. ``inputs``
-    tell whether the vehicle stands: then stop points at one place become a short path through it.
+    tell whether the vehicle stands there: then stop points at one place become a short path.
     """
-    may_stand = _may_stand(points, n, inputs[0].vx)
+    are_stops = _are_stop_points(points, n)
     left = _drop_coincident(points, n)
     wrong, is_backward = _straighten(points, left)
     left = _drop_noise(points, left, is_backward)
     cleaned[0].turned = wrong
     cleaned[0].n = left
     if _extent(points, left) < REACH:
-        if not may_stand:
+        if not (are_stops and _stands_at(params[0], points[0], inputs[0])):
             return _COINCIDENT
         _stretch(points)
         cleaned[0].n = FEWEST_POINTS
