@@ -39,9 +39,9 @@ def _with(field: str, value: float, index: int) -> Records:
     return points
 
 
-def _coincident() -> Records:
+def _one_place() -> Records:
     points = ROAD.copy()
-    points[11] = points[10]
+    points[:] = points[10]
     return points
 
 
@@ -63,7 +63,8 @@ def cases() -> Iterator[tuple[str, Offer]]:
     yield "zero quaternion of a point", _trajectory(_with("qw", 0.0, 3))
     yield "no points", _trajectory(ROAD[:0])
     yield "one point", _trajectory(ROAD[:1])
-    yield "a point twice", _trajectory(_coincident())
+    yield "all points at one place", _trajectory(_one_place())
+    yield "to and fro", _trajectory(np.concatenate([ROAD, ROAD[::-1]]))
     yield "too many points", _trajectory(make_points(np.arange(MAX_POINTS + 1) * 0.1))
     yield "too long", _trajectory(make_points(np.linspace(0.0, 1e6, 50)))
     yield "no such count", lambda follower: follower.offer_incoming(-5, 1000.0)

@@ -124,3 +124,17 @@ def test_without_smooth_stop_it_drives_until_it_stands_near_the_stop_point() -> 
 @pytest.mark.parametrize(("x", "after"), [(9.6, STOPPING), (9.4, STOPPING), (8.55, STOPPING)])
 def test_stopping_goes_on_up_to_a_metre_and_a_half(x: float, after: LongitudinalState) -> None:
     assert rig_in(STOPPING).tick(x=x, vx=0.5).lon_state == after
+
+
+@pytest.mark.parametrize("before", [STOPPED, STOPPING])
+def test_a_departure_forgets_the_errors_of_the_drive_before(before: LongitudinalState) -> None:
+    """The filtered error of speed begins at 0, so its first value is a tenth of the error."""
+    rig = rig_in(before, enable_keep_stopped_until_steer_convergence=False)
+    rig.s.pid.integral, rig.s.pid.error_prev, rig.s.pid.started = 2.0, 1.0, True
+    rig.s.vel_error, rig.s.acc_error, rig.s.raw_acc = 9.0, 4.0, -0.75
+    trace = rig.tick(x=5.0, vx=0.5)
+    assert trace.lon_state == DRIVE
+    assert trace.err_vel_filtered == pytest.approx(0.1 * 1.5, abs=1e-9)
+    assert trace.pid_d == 0.0 and trace.pid_i <= 0.1 * 0.15 * 0.15 + 1e-9
+    if before == STOPPED:
+        assert abs(rig.s.acc_error) < 0.1, "nor does the acceleration remember"

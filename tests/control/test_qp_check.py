@@ -154,3 +154,42 @@ def test_unconstrained_check() -> None:
     assert check_without_limits.call(q, n) == MpcStatus.SOLUTION_NOT_OPTIMAL
     q[0].u[9] = math.nan
     assert check_without_limits.call(q, n) == MpcStatus.SOLUTION_NOT_FINITE
+
+
+@pytest.mark.parametrize("gradient", [(-2.0, 1.0), (2.0, 1.0), (2.0, -1.0), (-2.0, -1.0)])
+def test_a_step_beside_a_gap_counts_from_the_bound_that_was_missed(
+    gradient: tuple[float, float],
+) -> None:
+    """No bound is touched, so each step misses zero by its own gradient alone."""
+    wide = np.array([9.0, 9.0])
+    q = problem(np.eye(2), np.array(gradient), -wide, wide, -wide, wide)
+    assert check(q, 2) == MpcStatus.SOLUTION_NOT_OPTIMAL
+    assert q[0].qp_residual == 1.0, "the greatest gradient over itself"
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_touched_bound_of_the_angle_balances_its_own_step_alone(side: float) -> None:
+    """No rate is at its bound, so nothing of the last step's multiplier reaches the one before."""
+    wide, touched = np.array([9.0, 9.0]), np.array([9.0, 0.0])
+    low, high = (-touched, wide) if side > 0.0 else (-wide, touched)
+    q = problem(np.eye(2), np.array([side, 0.0]), low, high, -wide, wide)
+    assert check(q, 2) == MpcStatus.SOLUTION_NOT_OPTIMAL
+    assert q[0].qp_residual == 1.0
+
+
+@pytest.mark.parametrize(
+    ("gradient", "expected"),
+    [
+        ((-1.0, 1.0), MpcStatus.SOLVED),
+        ((1.0, -1.0), MpcStatus.SOLUTION_NOT_OPTIMAL),
+        ((-1.0, 0.9), MpcStatus.SOLUTION_NOT_OPTIMAL),
+        ((-1.0, 1.1), MpcStatus.SOLUTION_NOT_OPTIMAL),
+    ],
+)
+def test_two_steps_joined_at_the_lower_rate_by_hand(
+    gradient: tuple[float, float], expected: MpcStatus
+) -> None:
+    """The mirror image of the upper one."""
+    wide = np.array([9.0, 9.0])
+    q = problem(np.eye(2), np.array(gradient), -wide, wide, np.array([-9.0, 0.0]), wide)
+    assert check(q, 2) == expected

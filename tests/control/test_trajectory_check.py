@@ -41,23 +41,23 @@ def test_the_most_points(gate: TrajectoryFollower) -> None:
 
 @pytest.mark.parametrize("index", [0, 20, 38])
 @pytest.mark.parametrize(
-    ("dx", "dy", "refused"),
+    ("dx", "dy", "left"),
     [
-        (0.0, 0.0, True),
-        (0.9e-8, -0.9e-8, True),
-        (1.1e-8, 0.0, False),
-        (0.0, -1.1e-8, False),
+        (0.0, 0.0, 39),
+        (0.9e-8, -0.9e-8, 39),
+        (1.1e-8, 0.0, 40),
+        (0.0, -1.1e-8, 39),  # beside the one before, not ahead of it: noise
     ],
 )
-def test_consecutive_points_that_coincide(
-    gate: TrajectoryFollower, index: int, dx: float, dy: float, refused: bool
+def test_of_consecutive_points_that_coincide_one_is_left(
+    gate: TrajectoryFollower, index: int, dx: float, dy: float, left: int
 ) -> None:
     """Nearer than 1e-8 m in x and in y."""
     points = make_points(np.arange(40.0) - index)
     points["x"][index + 1 :] += dx - 1.0
     points["y"][index + 1 :] = dy
-    wanted = Refusal.COINCIDENT_POINTS if refused else Refusal.ACCEPTED
-    assert gate.offer_trajectory(points, 1000.0) is wanted
+    assert gate.offer_trajectory(points, 1000.0) is Refusal.ACCEPTED
+    assert gate.inputs["n_points"][0] == left
 
 
 def facing(points: Records, yaws: Any) -> Records:

@@ -62,9 +62,14 @@ def is_finite(row: Row) -> bool:
     return row.command is not None and math.isfinite(sum(row.command[2:7]))
 
 
-def test_row_27_coincident_points_are_refused() -> None:
-    """A planner that publishes them is wrong; nothing is removed on its behalf."""
-    refuse(edit.points(each_twice), SampleReason.COINCIDENT_POINTS)
+def test_row_27_of_coincident_points_one_is_left() -> None:
+    """Each point twice is the path that it would be with each of them once."""
+    twin, scene = Scene().drive(), Scene().drive()
+    scene.inject(wire.change(edit.points(each_twice)), "trajectory")
+    for row, other in zip(stays_active(scene, 5.0), stays_active(twin, 5.0), strict=True):
+        assert row.command is not None and other.command is not None
+        assert row.command[2:7] == other.command[2:7]
+    assert not scene.input("trajectory").refused
 
 
 @pytest.mark.parametrize("shift", [1e-6, 1e-4, 9e-4])

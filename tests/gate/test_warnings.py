@@ -21,6 +21,7 @@ def told(
     old: bool = False,
     off: bool = False,
     step_until: float = 8.0,
+    turned: bool = False,
 ) -> int:
     stamps, rate, writers = StampGate(0.5), RateMeter(8.0), Writers(3)
     stamps.delay_s, rate.too_low = delay_s, low
@@ -28,7 +29,7 @@ def told(
     if guids:
         writers.update(frozenset({A}), 0.0)
         writers.update(frozenset({B, A} if guids > 1 else {B}), 8.0)
-    return warnings(now, stamps, writers, rate, old, off)
+    return warnings(now, stamps, writers, rate, old, off, turned)
 
 
 @pytest.mark.parametrize(
@@ -45,7 +46,8 @@ def told(
         (InputWarning.SECOND_PUBLISHER, told(guids=2, now=9.01)),
         (InputWarning.CLOCK_STEP, told(step_until=9.0)),
         (InputWarning(0), told(step_until=8.99)),
-        (InputWarning(127), told(1.0, True, 2, 9.0, True, True, 9.5)),
+        (InputWarning.YAW_REPLACED, told(turned=True)),
+        (InputWarning(255), told(1.0, True, 2, 9.0, True, True, 9.5, True)),
     ],
 )
 def test_each_cause_has_its_bit(bits: InputWarning, found: int) -> None:
@@ -54,5 +56,5 @@ def test_each_cause_has_its_bit(bits: InputWarning, found: int) -> None:
 
 def test_every_warning_is_explained() -> None:
     assert list(EXPLANATIONS) == list(InputWarning)
-    assert [int(bit) for bit in InputWarning] == [1, 2, 4, 8, 16, 32, 64]
+    assert [int(bit) for bit in InputWarning] == [1, 2, 4, 8, 16, 32, 64, 128]
     assert all(meaning and action for meaning, action in EXPLANATIONS.values())

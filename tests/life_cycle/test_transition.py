@@ -12,40 +12,45 @@ from safety_island.life_cycle.state import State
 from safety_island.life_cycle.transition import Conditions, Life, next_life
 
 TABLE = """
-state  blocked disengaged barred  arm hold ramp | next   reason     cause
+state  blocked disengaged barred  arm hold ramp path | next   reason     cause
 # Latched: out of it only by an explicit act, and never while a cause stands.
-SILENT some    -          -       -   -    -    | SILENT blocked    kept
-SILENT none    OPERATOR   -       -   -    -    | READY  disengaged none
-SILENT none    GONE       -       -   -    -    | SILENT disengaged kept
-SILENT none    none       -       yes -    -    | ACTIVE none       none
-SILENT none    none       cause   no  -    -    | SILENT cause      kept
-SILENT none    none       -       no  -    -    | SILENT latched    kept
+SILENT some    -          -       -   -    -     -    | SILENT blocked    kept
+SILENT none    OPERATOR   -       -   -    -     -    | READY  disengaged none
+SILENT none    GONE       -       -   -    -     -    | SILENT disengaged kept
+SILENT none    none       -       yes -    -     -    | ACTIVE none       none
+SILENT none    none       cause   no  -    -     -    | SILENT cause      kept
+SILENT none    none       -       no  -    -     -    | SILENT latched    kept
 # An operator who takes over ends every state but the latched one.
--      some    OPERATOR   -       -   -    -    | INIT   blocked    none
--      none    OPERATOR   -       -   -    -    | READY  disengaged none
+-      some    OPERATOR   -       -   -    -     -    | INIT   blocked    none
+-      none    OPERATOR   -       -   -    -     -    | READY  disengaged none
 # Out of ACTIVE: silence, or with CAN_ONLY hold and stop.
-ARMED  none    none       -       -   -    -    | ACTIVE none       none
-ARMED  none    GONE       -       -   -    none | READY  disengaged disengaged
-ARMED  some    -          -       -   -    none | SILENT blocked    blocked
-ARMED  -       -          -       -   no   -    | HOLD   lost       lost
-ARMED  -       -          -       -   yes  -    | STOP   lost       lost
+ARMED  none    none       -       -   -    -     -    | ACTIVE none       none
+ARMED  none    GONE       -       -   -    none  -    | READY  disengaged disengaged
+ARMED  some    none       -       -   -    none  yes  | INIT   blocked    none
+ARMED  some    -          -       -   -    none  -    | SILENT blocked    blocked
+ARMED  -       -          -       -   no   -     -    | HOLD   lost       lost
+ARMED  -       -          -       -   yes  -     -    | STOP   lost       lost
 # HOLD ends with its cause, or in a stop.
-HOLD   none    none       -       -   -    -    | ACTIVE none       none
-HOLD   -       -          -       -   no   -    | HOLD   lost       kept
-HOLD   -       -          -       -   yes  -    | STOP   lost       kept
-# A stop that has begun is carried through.
-STOP   none    none       -       -   -    over | SILENT latched    kept
-STOP   none    none       -       -   -    -    | STOP   cause      kept
-STOP   -       -          -       -   -    over | SILENT lost       kept
-STOP   -       -          -       -   -    -    | STOP   lost       kept
+HOLD   none    none       -       -   -    -     -    | ACTIVE none       none
+HOLD   -       -          -       -   no   -     -    | HOLD   lost       kept
+HOLD   -       -          -       -   yes  -     -    | STOP   lost       kept
+# A stop that has begun is carried through; at rest, for want of a path, it latches nothing.
+STOP   some    none       -       -   -    over  yes  | INIT   blocked    none
+STOP   none    none       some    no  -    over  yes  | SILENT barred     barred
+STOP   none    none       -       -   -    over  yes  | ACTIVE none       none
+STOP   none    none       -       -   -    over  -    | SILENT latched    kept
+STOP   none    none       -       -   -    -     -    | STOP   cause      kept
+STOP   -       -          -       -   -    over  -    | SILENT lost       kept
+STOP   -       -          -       -   -    -     -    | STOP   lost       kept
 # Not armed: everything must be there, and a restart at speed needs an explicit act.
--      some    -          -       -   -    -    | INIT   blocked    none
--      none    GONE       -       -   -    -    | READY  disengaged none
--      none    none       some    no  -    -    | SILENT barred     barred
--      none    none       -       -   -    -    | ACTIVE none       none
+-      some    -          -       -   -    -     -    | INIT   blocked    none
+-      none    GONE       -       -   -    -     -    | READY  disengaged none
+-      none    none       some    no  -    -     -    | SILENT barred     barred
+-      none    none       -       -   -    -     -    | ACTIVE none       none
 """
 """``ARMED``: ACTIVE, or READY with a cause, which was ACTIVE. ``ramp``: none (no such output),
-over, or still going. ``lost``: blocked, else disengaged. The first row that fits counts."""
+over, or still going. ``path``: only a trajectory is lost, and the vehicle stood all the while.
+``lost``: blocked, else disengaged. The first row that fits counts."""
 
 GONE = Reason.MODE_WRITER_GONE
 FALLS = (Reason.INPUT_STALE, Reason.OVERRUN, Reason.RESTARTED_WHILE_MOVING, GONE)
@@ -73,7 +78,7 @@ def lives(state: State) -> list[Life]:
 
 
 def conditions(blocked: tuple[Reason, ...]) -> Iterator[Conditions]:
-    for values in product((Reason.NONE, *blocked), DISENGAGED, BARS, BOOLS, BOOLS, BOOLS, BOOLS):
+    for values in product((Reason.NONE, *blocked), DISENGAGED, BARS, *[BOOLS] * 5):
         yield Conditions(*values)
 
 
@@ -87,7 +92,7 @@ def is_armed(life: Life) -> bool:
 
 
 def fits(row: list[str], life: Life, now: Conditions) -> bool:
-    state, blocked, disengaged, barred, arm, hold, ramp = row[:7]
+    state, blocked, disengaged, barred, arm, hold, ramp, path = row[:8]
     words = {False: "no", True: "yes"}
     bars = {"some": now.barred != 0, "cause": now.barred == life.cause, "-": True}
     ramps = {"none": not now.has_ramp, "over": now.ramp_over, "-": True}
@@ -99,6 +104,7 @@ def fits(row: list[str], life: Life, now: Conditions) -> bool:
         and arm in ("-", words[now.arm])
         and hold in ("-", words[now.hold_over])
         and ramps[ramp]
+        and path in ("-", words[now.only_path])
     )
 
 
@@ -114,7 +120,7 @@ def expected(life: Life, now: Conditions) -> Life:
         "cause": life.cause,
         "kept": life.cause,
     }
-    return Life(State[row[7]], words[row[8]], words[row[9]])
+    return Life(State[row[8]], words[row[9]], words[row[10]])
 
 
 @pytest.mark.parametrize("state", State)
@@ -130,12 +136,12 @@ def test_every_row_of_the_table_is_needed() -> None:
 
 
 def test_the_pairs_are_all_pairs() -> None:
-    assert len(EVERY) == 3 * 3 * 2 * 2**4
+    assert len(EVERY) == 3 * 3 * 2 * 2**5
     assert len(PAIRS) == len(EVERY) * 2 * (1 + 2 + 1 + 3 * 4)
 
 
 def test_all_fields_keep_their_order() -> None:
     names = ("blocked", "disengaged", "barred", "arm", "has_ramp", "hold_over", "ramp_over")
-    assert Conditions._fields == names
+    assert Conditions._fields == (*names, "only_path")
     assert Life(State.INIT, Reason.STALLED).cause is Reason.NONE
     assert set(EXPLANATIONS) == set(Reason)

@@ -58,6 +58,7 @@ class FakeFollower:
         self.absent = ["trajectory", "odometry", "steering", "acceleration", "operation mode"]
         self.refusal = Refusal.ACCEPTED
         self.ready = True
+        self.turned_points = 0
         self.lateral_status = MpcStatus.SOLVED
         self.longitudinal_state = 0
         self.incoming = new_points()

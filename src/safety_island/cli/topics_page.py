@@ -14,10 +14,12 @@ from safety_island.control.input_check import (
     MAX_SQUARE_NORM,
     MAX_TURN,
     MIN_SQUARE_NORM,
-    SAME_PLACE,
+    NEAR,
     STANDSTILL,
 )
 from safety_island.control.limits import MAX_POINTS
+from safety_island.control.point_list import SAME_PLACE
+from safety_island.control.trajectory_clean import MAX_YAW_OFF, REACH
 from safety_island.dds.names import dds_topic_name
 from safety_island.dds.topics import OWN, TOPICS, TopicEntry
 from safety_island.messages.registry import dds_type_name
@@ -68,11 +70,28 @@ keep out what is no measurement, and the squares and sums of the rest finite.
 | accelerations | {MAX_ACCELERATION:g} | m/s² | ten times what tyres can do |
 | angles of tyres, turn rates | {MAX_TURN:g} | rad, rad/s | sixteen turns; no vehicle does |
 | norm of an orientation | {_NORMS} | 1 | rounding leaves far less |
-| distance of two points | {SAME_PLACE:g} in x or y | m | nearer, they give no direction |
 | points of a trajectory | {MAX_POINTS} at most | 1 | the memory of the island |
 | length to and fro | {MAX_BACKTRACK:g} | m | rounding of a planner's points |
 | speeds of both signs | {STANDSTILL:g} | m/s | below it, a point has no direction |
 | operation mode | 0 to 255 | 1 | one byte on the wire |
+
+## What is cleaned
+
+Planners send trajectories whose points have flaws that the path has not. These are put right before
+the controllers see them; a trajectory without them is not touched, not in one bit.
+
+| flaw | bound | what is done |
+| --- | --- | --- |
+| points on top of each other | {SAME_PLACE:g} m in x and y | one is left, with the slowest speed |
+| a point beside the one before, not ahead of it | {NEAR:g} m | dropped; its speed stays if slower |
+| an orientation against the path before and behind | {MAX_YAW_OFF:g} rad | that of the path, \
+`YAW_REPLACED` |
+| stop points all at the place where the vehicle stands | {REACH:g} m | a path there, speed zero |
+
+The path's direction is that over {REACH:g} m, so noise of some millimetres does not count. When
+half of the orientations or more contradict the path, or it turns by more than a right angle in one
+point, none is replaced. Points at one place are refused (`COINCIDENT_POINTS`) while the vehicle
+moves or is elsewhere, or when they are no stop points.
 """
 
 

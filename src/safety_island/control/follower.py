@@ -37,6 +37,7 @@ from safety_island.control.longitudinal_state import (
 from safety_island.control.params import Parameters
 from safety_island.control.qp_records import QP
 from safety_island.control.records import (
+    CLEANED,
     COMMAND,
     INPUTS,
     TRACE,
@@ -46,6 +47,7 @@ from safety_island.control.records import (
     pack_parameters,
 )
 from safety_island.control.status import MpcStatus, Refusal
+from safety_island.control.trajectory_clean import clean_trajectory
 
 INPUT_NAMES = ("trajectory", "odometry", "steering", "acceleration", "operation mode")
 """The five inputs without which there is no tick."""
@@ -70,6 +72,7 @@ class _Path(NamedTuple):
 
     points: Records
     check: Callable[[int], int]
+    clean: Callable[[int], int]
     lateral: Callable[[float], int]
     longitudinal: Callable[[float], int]
 
@@ -98,6 +101,9 @@ class TrajectoryFollower:
         self._write_pose = partial(_POSE_AND_SPEED.pack_into, memory, 0)
         self._write_path = partial(_PATH.pack_into, memory, INPUTS.fields["n_points"][1])
         self._paths = 0
+        self._cleaned: Records = np.zeros(1, CLEANED)
+        self.turned_points = 0
+        """Orientations of the trajectory in force that contradicted it, and were replaced."""
         self._missing = set(INPUT_NAMES)
         self._is_enabled = False
         self._is_allowed = True
@@ -119,6 +125,7 @@ class TrajectoryFollower:
         return _Path(
             points,
             check_trajectory.bind(params, points),
+            clean_trajectory.bind(params, points, self.inputs, self._cleaned),
             lateral_step.bind(*before, self._lateral, self._qp, *after),
             longitudinal_step.bind(*before, self._longitudinal, self._work, *after),
         )
@@ -157,9 +164,15 @@ class TrajectoryFollower:
         """Offer the first ``n`` points of ``incoming``, into which a decoder may write directly."""
         if not math.isfinite(stamp):
             return Refusal.NOT_FINITE
+        turned = 0
         if refusal := self._next.check(n):
-            return Refusal(refusal)
+            if refusal == Refusal.NEEDS_CLEANING:
+                refusal = self._next.clean(n)
+                n, turned = self._cleaned[0].tolist()
+            if refusal:
+                return Refusal(refusal)
         self._now, self._next = self._next, self._now
+        self.turned_points = turned
         self._paths += 1
         self._write_path(n, self._paths, stamp)
         self._has_path = self._has_path or n >= _FEWEST_FOR_MPC

@@ -1,12 +1,15 @@
 """Refusal of inputs that must not touch the controllers: every value finite and within reason.
 
-The bounds are wide: they keep squares and sums of finite numbers finite, nothing more.
+The bounds are wide: they keep squares and sums of finite numbers finite, nothing more. A trajectory
+is checked here and, where its points have flaws that its path has not, cleaned in
+``trajectory_clean``.
 """
 
 import math
 
 from safety_island.control.kernel import entry, kernel
 from safety_island.control.limits import MAX_POINTS, MAX_REFERENCE
+from safety_island.control.points import advance
 from safety_island.control.records import PARAMS, POINT
 from safety_island.control.status import Refusal
 
@@ -26,6 +29,8 @@ MAX_BACKTRACK = 0.05
 """Length [m] that a trajectory may lead against the direction of the rest of it."""
 STANDSTILL = 1e-3
 """Speed [m/s] below which a point has no direction."""
+NEAR = 0.03
+"""Two points nearer than this [m] give no direction: ten times the noise of a planner's points."""
 UNIT_TOLERANCE = 1e-9
 """Square of a norm further than this from 1 is brought back to it; nearer, the bits stay."""
 
@@ -33,16 +38,20 @@ _ACCEPTED = int(Refusal.ACCEPTED)
 _NOT_FINITE = int(Refusal.NOT_FINITE)
 _TOO_FEW = int(Refusal.TOO_FEW_POINTS)
 _TOO_MANY = int(Refusal.TOO_MANY_POINTS)
-_COINCIDENT = int(Refusal.COINCIDENT_POINTS)
 _BAD_QUATERNION = int(Refusal.BAD_QUATERNION)
 _TOO_LONG = int(Refusal.TOO_LONG)
 _OUT_OF_RANGE = int(Refusal.OUT_OF_RANGE)
 _MIXED = int(Refusal.MIXED_DIRECTION)
+_NEEDS_CLEANING = int(Refusal.NEEDS_CLEANING)
 
 _LARGEST_PART = 2.0  # of a quaternion; the square of a larger one could overflow
 _FEWEST_POINTS = 2
-SAME_PLACE = 1e-8
-"""Two points nearer than this [m], in x and in y, are one."""
+FEWEST_POINTS = 3
+"""Points with which both controllers run; two are enough for the longitudinal one."""
+_LEANS = 0.5
+"""Tangent of the angle between step and orientation, beyond which it is looked at closely."""
+_LEANS_NEAR = 0.05
+"""The same for points that are NEAR, where the flaws of splines begin."""
 _EXTENSION_POINTS = 256  # room for the points that the terminal extension appends
 
 
@@ -57,11 +66,10 @@ def _normalise(point, square):
 
 
 @kernel
-def _advance(point, dx, dy):
-    """How far a step [m] from a point leads in the direction that the point faces."""
-    cos_yaw = 1.0 - 2.0 * (point.qy * point.qy + point.qz * point.qz)
-    sin_yaw = 2.0 * (point.qw * point.qz + point.qx * point.qy)
-    return dx * cos_yaw + dy * sin_yaw
+def leans(dx, dy, way, side):
+    """Whether a step leads so far aside of an orientation, or so short, that one may be wrong."""
+    limit = _LEANS_NEAR if abs(dx) + abs(dy) < NEAR else _LEANS
+    return not abs(side) < limit * abs(way)
 
 
 @kernel
@@ -100,22 +108,32 @@ def _length(points, n):
     return total
 
 
+@kernel
+def has_room(params, points, n):
+    """Whether the resampled trajectory fits its memory."""
+    room = (MAX_REFERENCE - _EXTENSION_POINTS) * params[0].traj_resample_dist
+    return _length(points, n) <= room
+
+
 @entry(PARAMS, POINT, int)
 def check_trajectory(params, points, n):
     """Refusal of a received trajectory ``points[:n]``; nearly unit orientations become units.
 
-    A trajectory leads forward or backward, not both, and so do its speeds: points in another order
-    than that of driving would lead to and fro.
+    A trajectory leads forward or backward, not both, and so do its speeds. NEEDS_CLEANING: every
+    value is fine, and ``clean_trajectory`` decides.
     """
     if n < _FEWEST_POINTS:
         return _TOO_FEW
     if n > MAX_POINTS:
         return _TOO_MANY
     bound = 0.0  # at least the length of the path
-    forward = 0.0
-    backward = 0.0
+    forward = False
+    backward = False
+    is_clean = True
     fastest = 0.0
     slowest = 0.0
+    dx = 0.0
+    dy = 0.0
     for i in range(n):
         reason = _check_point(points[i])
         if reason != _ACCEPTED:
@@ -125,14 +143,17 @@ def check_trajectory(params, points, n):
         if i > 0:
             dx = points[i].x - points[i - 1].x
             dy = points[i].y - points[i - 1].y
-            if abs(dx) < SAME_PLACE and abs(dy) < SAME_PLACE:
-                return _COINCIDENT
             bound += abs(dx) + abs(dy)
-            way = _advance(points[i - 1], dx, dy)
-            forward += max(way, 0.0)
-            backward += max(-way, 0.0)
+            way, side = advance(points[i - 1], dx, dy)
+            forward |= way > 0.0
+            backward |= way < 0.0
+            is_clean &= not leans(dx, dy, way, side)
+    if min(fastest, -slowest) > STANDSTILL:
+        return _MIXED
+    way, side = advance(points[n - 1], dx, dy)
+    forward |= way > 0.0
+    backward |= way < 0.0
+    if not is_clean or leans(dx, dy, way, side) or (forward and backward):
+        return _NEEDS_CLEANING
     room = (MAX_REFERENCE - _EXTENSION_POINTS) * params[0].traj_resample_dist
-    if bound > room and _length(points, n) > room:
-        return _TOO_LONG
-    is_mixed = min(forward, backward) > MAX_BACKTRACK or min(fastest, -slowest) > STANDSTILL
-    return _MIXED if is_mixed else _ACCEPTED
+    return _TOO_LONG if bound > room and not has_room(params, points, n) else _ACCEPTED

@@ -32,6 +32,7 @@ SOURCE_COLUMNS = [
     ("source_id", "i8"),  # trajectory_id of the accepted trajectory; 0: none
     ("source_n", "i8"),
     ("source_yaw_end", "f8"),  # yaw of its last point [rad]
+    ("source_is_forward", "?"),  # its points face the way that they lead
     ("px", "f8", (_SOURCE,)),  # its points [m]
     ("py", "f8", (_SOURCE,)),
     ("pz", "f8", (_SOURCE,)),

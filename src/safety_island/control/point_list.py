@@ -7,11 +7,14 @@ import numpy as np
 from safety_island.control.kernel import kernel
 from safety_island.control.points import distance_2d, offset_along
 
+SAME_PLACE = 1e-8
+"""Two points nearer than this [m], in x and in y, are one, as in Autoware."""
+
 
 @kernel
 def overlaps(a, b):
-    """Whether two points stand in the same place: closer than 1e-8 m in x and in y."""
-    return abs(a.x - b.x) < 1e-8 and abs(a.y - b.y) < 1e-8
+    """Whether two points stand in the same place: closer than SAME_PLACE in x and in y."""
+    return abs(a.x - b.x) < SAME_PLACE and abs(a.y - b.y) < SAME_PLACE
 
 
 @kernel

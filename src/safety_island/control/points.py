@@ -101,3 +101,11 @@ def distance_3d(a, b):
     dy = b.y - a.y
     dz = b.z - a.z
     return math.sqrt(dx * dx + dy * dy + dz * dz)
+
+
+@kernel
+def advance(point, dx, dy):
+    """How far a step [m] leads in the direction that a point faces, and how far to its left."""
+    cos_yaw = 1.0 - 2.0 * (point.qy * point.qy + point.qz * point.qz)
+    sin_yaw = 2.0 * (point.qw * point.qz + point.qx * point.qy)
+    return dx * cos_yaw + dy * sin_yaw, dy * cos_yaw - dx * sin_yaw

@@ -113,6 +113,14 @@ POINT = record(
 )
 """One trajectory point, 88 bytes, laid out as on the wire from the first ``position.x`` on."""
 
+CLEANED = record(
+    [
+        ("n", "i8"),  # points that are left
+        ("turned", "i8"),  # orientations that were replaced
+    ]
+)
+"""What cleaning has made of a trajectory."""
+
 INPUTS = record(
     [
         ("x", "f8"),  # ego position in the map [m]

@@ -5,12 +5,10 @@ and curvature (``reference_shape``) are worked out as far as they are asked for,
 same numbers.
 """
 
-import math
-
-from safety_island.control.geometry import clip, normalize_angle, yaw_of
+from safety_island.control.geometry import clip, yaw_of
 from safety_island.control.kernel import kernel
 from safety_island.control.limits import MAX_REFERENCE
-from safety_island.control.points import nearest_index, offset_along, segment_of
+from safety_island.control.points import advance, nearest_index, offset_along, segment_of
 from safety_island.control.reference_positions import close, ensure, extend, work_out
 from safety_island.control.reference_smoothing import smooth_reference
 from safety_island.control.spline import (
@@ -45,16 +43,20 @@ def accept_source(params, points, n, lat):
     py = lat.py
     pz = lat.pz
     pv = lat.pv
+    ahead = 0.0
     for i in range(n):
         point = points[i]
         px[i] = point.x
         py[i] = point.y
         pz[i] = point.z
         pv[i] = point.v
+        if i > 0:
+            way, _ = advance(points[i - 1], px[i] - px[i - 1], py[i] - py[i - 1])
+            ahead += way
+    lat.source_is_forward = ahead > 0.0
     last = points[n - 1]
     lat.source_yaw_end = yaw_of(last.qx, last.qy, last.qz, last.qw)
     fit_space_curve(lat.arc, lat.gain, px, py, pz, lat.mx, lat.my, lat.mz, n)
-    _fit_yaw(points, n, lat, 2.0 * params.traj_resample_dist)
     lat.source_n = n
 
 
@@ -108,14 +110,19 @@ def _place_stations(lat, start, step):
 
 
 @kernel
-def _detect_direction(lat, count):
-    """Set the driving direction from the yaw of the first point; kept for a single point."""
-    for i in range(min(count, 2)):
-        j = interval_from(lat.arc, lat.source_n, 0, lat.rs[i])
-        lat.short_yaw[i] = spline_value(lat.arc, lat.pyaw, lat.myaw, j, lat.rs[i])
+def _set_direction(params, points, lat, count):
+    """Set the driving direction, kept for a single point; and the yaw of a short reference.
+
+    The whole trajectory counts, not its first point: a spline through the yaws of two points that
+    are close together may be turned round between them.
+    """
     if count >= 2:
-        azimuth = math.atan2(lat.ry[1] - lat.ry[0], lat.rx[1] - lat.rx[0])
-        lat.is_forward = abs(normalize_angle(lat.short_yaw[0] - azimuth)) < math.pi / 2.0
+        lat.is_forward = lat.source_is_forward
+    if count < 3:
+        _fit_yaw(points, lat.source_n, lat, 2.0 * params.traj_resample_dist)
+        for i in range(count):
+            j = interval_from(lat.arc, lat.source_n, 0, lat.rs[i])
+            lat.short_yaw[i] = spline_value(lat.arc, lat.pyaw, lat.myaw, j, lat.rs[i])
 
 
 @kernel
@@ -142,10 +149,10 @@ def update_reference(params, points, inputs, lat):
     smooths = params.enable_path_smoothing and count > 2 * params.path_filter_moving_ave_num
     if not smooths and not params.extend_trajectory_for_end_yaw_control:
         ensure(lat, 1)
-        _detect_direction(lat, count)
+        _set_direction(params, points, lat, count)
         return
     work_out(lat, count)
-    _detect_direction(lat, count)
+    _set_direction(params, points, lat, count)
     if smooths:
         smooth_reference(lat, count, params.path_filter_moving_ave_num)
     if params.extend_trajectory_for_end_yaw_control:

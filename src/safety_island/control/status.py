@@ -75,6 +75,8 @@ class Refusal(IntEnum):
     TOO_LONG = 6
     OUT_OF_RANGE = 7
     MIXED_DIRECTION = 8
+    NEEDS_CLEANING = 9
+    """Of a check alone: cleaning decides."""
 
 
 class MpcStatus(IntEnum):

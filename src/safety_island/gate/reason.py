@@ -36,6 +36,9 @@ class SampleReason(IntEnum):
     FAULT = 22
 
 
+UNUSABLE = frozenset(reason for reason in SampleReason if reason <= SampleReason.BAD_STAMP)
+"""A new sample of the publisher came, and its bytes, its values or its points cannot be used."""
+
 EXPLANATIONS: dict[SampleReason, tuple[str, str]] = {
     SampleReason.ENCAPSULATION: (
         "the first four bytes do not announce plain CDR (XCDR1)",
@@ -61,11 +64,11 @@ EXPLANATIONS: dict[SampleReason, tuple[str, str]] = {
     ),
     SampleReason.TOO_MANY_POINTS: ("the trajectory has more than 4096 points", "publish a part"),
     SampleReason.COINCIDENT_POINTS: (
-        "two consecutive points of the trajectory are at one place",
-        "remove overlapping points in the planner",
+        "all points of the trajectory are at one place",
+        "nothing while the vehicle stands; else look at the planner",
     ),
     SampleReason.MIXED_DIRECTION: (
-        "the points lead forward and backward along the trajectory",
+        "the points lead forward and backward along the trajectory, or their speeds do",
         "publish them in the order of driving, one direction at a time",
     ),
     SampleReason.TOO_LONG: ("the trajectory is longer than is resampled", "publish a part"),

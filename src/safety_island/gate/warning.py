@@ -15,6 +15,7 @@ class InputWarning(IntFlag):
     SECOND_PUBLISHER = 16
     PUBLISHER_CHANGED = 32
     CLOCK_STEP = 64
+    YAW_REPLACED = 128
 
 
 EXPLANATIONS: dict[InputWarning, tuple[str, str]] = {
@@ -45,6 +46,10 @@ EXPLANATIONS: dict[InputWarning, tuple[str, str]] = {
     InputWarning.CLOCK_STEP: (
         "its stamps jumped against the island's own clock within the last second",
         "let the clocks of both machines be slewed, not set, while the vehicle drives",
+    ),
+    InputWarning.YAW_REPLACED: (
+        "orientations of its points contradict the path, and were replaced by its direction",
+        "look at the planner: which module inserts points",
     ),
 }
 """Warning -> what it means, what to do."""

@@ -10,14 +10,22 @@ from safety_island.gate.writers import Writers
 _AGE, _RATE, _CLOCK = int(InputWarning.AGE), int(InputWarning.RATE), int(InputWarning.CLOCK)
 _DELAY, _SECOND = int(InputWarning.DELAY), int(InputWarning.SECOND_PUBLISHER)
 _CHANGED, _STEP = int(InputWarning.PUBLISHER_CHANGED), int(InputWarning.CLOCK_STEP)
+_TURNED = int(InputWarning.YAW_REPLACED)
 
 
 def warnings(
-    now: float, stamps: StampGate, writers: Writers, rate: RateMeter, is_old: bool, is_off: bool
+    now: float,
+    stamps: StampGate,
+    writers: Writers,
+    rate: RateMeter,
+    is_old: bool,
+    is_off: bool,
+    is_turned: bool,
 ) -> int:
     """Return the bits of InputWarning at ``now`` [s, monotonic].
 
-    ``is_old``: it is older than is warned of; ``is_off``: its stamp is far from the wall clock.
+    ``is_old``: it is older than is warned of; ``is_off``: its stamp is far from the wall clock;
+    ``is_turned``: orientations in it were replaced.
     """
     bits = _AGE if is_old else 0
     if rate.too_low:
@@ -32,4 +40,6 @@ def warnings(
         bits |= _CHANGED
     if now <= stamps.step_told_until:
         bits |= _STEP
+    if is_turned:
+        bits |= _TURNED
     return bits

@@ -23,3 +23,5 @@ class Facts(NamedTuple):
     """The MPC found no steering angle."""
     refused: Reason = Reason.NONE
     """Why the command must not go out."""
+    unfollowable: bool = False
+    """Trajectories come, but they are refused, or lead where the vehicle is not."""

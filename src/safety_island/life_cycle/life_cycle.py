@@ -16,6 +16,9 @@ _QUIET = (Reason.NONE, Reason.NONE)
 _ACTIVE = State.ACTIVE
 _DRIVES = (_ACTIVE, State.HOLD, State.STOP)
 _CONTROLS = (_ACTIVE, State.READY, State.INIT, State.HOLD)
+_STOPS = (State.HOLD, State.STOP)
+_OF_THE_PATH = (Reason.NO_TRAJECTORY, Reason.INPUT_STALE, Reason.MPC_FAILED)
+"""What a trajectory that cannot be followed may end in."""
 
 
 class LifeCycle:
@@ -35,6 +38,8 @@ class LifeCycle:
         self._barred = Reason.RESTARTED_WHILE_MOVING
         self._last_tick: float | None = None
         self._last_sleep_s = self._speed = 0.0
+        self._only_path = False
+        """Since ACTIVE was left, nothing was lost but a trajectory, and the vehicle stood."""
 
     @property
     def state(self) -> State:
@@ -91,7 +96,7 @@ class LifeCycle:
             self._stop.enter(State.STOP, self._speed)
         elif self.life.state is not State.SILENT:  # what is latched stays so
             self.life = Life(State.INIT, Reason.STALLED)
-        self._barred = Reason.STALLED
+        self._barred, self._only_path = Reason.STALLED, False
         self._failures.forget()
 
     def judge(self, facts: Facts, now: float) -> Life:
@@ -105,7 +110,9 @@ class LifeCycle:
         elif facts.disengaged is Reason.NOT_AUTONOMOUS:
             self._barred = Reason.NONE
         own = self._failures.judge(facts, now)
-        return self._step(facts.blocked or own, facts.disengaged, facts.arm)
+        blocked = facts.blocked or own
+        is_of_path = not blocked or (facts.unfollowable and blocked in _OF_THE_PATH)
+        return self._step(blocked, facts.disengaged, facts.arm, is_of_path)
 
     def fault(self) -> Life:
         """Note a tick that ended with an exception; too many end the output as other causes do.
@@ -116,15 +123,23 @@ class LifeCycle:
             return self._step(Reason.CONTROLLER_FAULT)
         return self.life
 
-    def _step(self, blocked: Reason, disengaged: Reason = Reason.NONE, arm: bool = False) -> Life:
+    def _step(
+        self,
+        blocked: Reason,
+        disengaged: Reason = Reason.NONE,
+        arm: bool = False,
+        is_of_path: bool = False,
+    ) -> Life:
         is_moving = not abs(self._speed) < self._moving_speed
         barred = self._barred if is_moving else Reason.NONE
-        hold_over, ramp_over = self._stop.hold_over, self._stop.ramp_over
-        self.life = next_life(
-            self.life,
-            Conditions(blocked, disengaged, barred, arm, self._has_ramp, hold_over, ramp_over),
-        )
+        before, stop = self.life.state, (self._stop.hold_over, self._stop.ramp_over)
+        may_wait = is_of_path and not is_moving and not disengaged
+        self._only_path = only_path = may_wait and (self._only_path or before not in _STOPS)
+        now = Conditions(blocked, disengaged, barred, arm, self._has_ramp, *stop, only_path)
+        self.life = next_life(self.life, now)
         state = self.life.state
+        if only_path and before is not State.INIT and state is State.INIT:
+            self._barred = Reason.RESTARTED_WHILE_MOVING  # it goes on by itself only where it stood
         if state in (State.INIT, State.SILENT):
             self._failures.forget_outputs()
         self._stop.enter(state, self._speed)

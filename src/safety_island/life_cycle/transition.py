@@ -25,6 +25,8 @@ class Conditions(NamedTuple):
     """The last command was repeated often enough."""
     ramp_over: bool
     """The stop ramp has come to its end."""
+    only_path: bool = False
+    """Nothing is lost but a trajectory that can be followed, and the vehicle has stood since."""
 
 
 class Life(NamedTuple):
@@ -68,14 +70,22 @@ def _unarmed(now: Conditions) -> Life:
 def _armed(now: Conditions) -> Life:
     """Out of ACTIVE: silence, since a gate brakes; without one, hold and then stop.
 
-    While just the mode is unknown, the gate is told as before, and need not brake for it.
+    While just the mode is unknown, the gate is told as before, and need not brake for it. A vehicle
+    that stands and lacks only a trajectory that it could follow may drive on when one comes.
     """
     lost = now.blocked or now.disengaged
     if not lost:
         return _WELL
     if now.has_ramp:
         return Life(State.STOP if now.hold_over else State.HOLD, lost, lost)
+    if now.blocked and _may_wait(now):
+        return _unarmed(now)
     return Life(State.SILENT if now.blocked else State.READY, lost, lost)
+
+
+def _may_wait(now: Conditions) -> bool:
+    """Whether what was lost needs no operator: the vehicle stands, and lacks but a trajectory."""
+    return now.only_path and not now.disengaged
 
 
 def _stop(state: State, cause: Reason, now: Conditions) -> Life:
@@ -84,7 +94,9 @@ def _stop(state: State, cause: Reason, now: Conditions) -> Life:
     if state is State.HOLD and not lost:
         return _WELL
     if state is State.STOP and now.ramp_over:
-        return Life(State.SILENT, lost or Reason.LATCHED, cause)
+        return (
+            _unarmed(now) if _may_wait(now) else Life(State.SILENT, lost or Reason.LATCHED, cause)
+        )
     is_stop = state is State.STOP or now.hold_over
     return Life(State.STOP if is_stop else State.HOLD, lost or cause, cause)
 

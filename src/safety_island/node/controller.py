@@ -193,6 +193,12 @@ class ControllerNode(Node):
             return Reason.SECOND_CAN_MASTER
         return self.identity.blocked(now)
 
+    def _lacks_only_a_path(self, blocked: Blocked, now: float) -> bool:
+        """Whether what forbids to send is that no trajectory that came can be followed."""
+        if blocked.reason is Reason.INPUT_STALE:
+            return self.inputs.lacks_only_a_path(now)
+        return blocked.reason is Reason.NO_TRAJECTORY
+
     def _control(self, blocked: Blocked, now: float, start_ns: int) -> tuple[Outcome, str]:
         """From inputs that are taken to a command that is sent."""
         disengaged = self.inputs.disengaged
@@ -206,7 +212,8 @@ class ControllerNode(Node):
         asked = self.arming.take()
         speed = self.inputs.speed()
         what_failed = bool(ran.fault), ran.unsolved, checked.refusal
-        facts = tuple.__new__(Facts, (blocked.reason, disengaged, speed, asked, *what_failed))
+        lost = ran.off_path or (bool(blocked.reason) and self._lacks_only_a_path(blocked, now))
+        facts = tuple.__new__(Facts, (blocked.reason, disengaged, speed, asked, *what_failed, lost))
         before = self.life_cycle.state
         life = self.life_cycle.judge(facts, now)
         if life.state is not before:

@@ -21,10 +21,13 @@ class Ran(NamedTuple):
     """The exception that ended them: a fault of the program."""
     unsolved: bool = False
     """The MPC found no steering angle, and the last one is held."""
+    off_path: bool = False
+    """Because the trajectory leads where the vehicle is not."""
 
 
 NO_COMMAND = Ran(None)
 _NO_REFERENCE, _SOLVED = MpcStatus.NO_REFERENCE, MpcStatus.SOLVED
+_OFF_PATH = (MpcStatus.TOO_FAR, MpcStatus.YAW_ERROR_TOO_LARGE)
 
 
 class Controllers:
@@ -75,7 +78,7 @@ class Controllers:
         follower.sync()
         command = tuple.__new__(Computed, self._command())
         if status is _SOLVED:
-            return tuple.__new__(Ran, (command, "", False))
+            return tuple.__new__(Ran, (command, "", False, False))
         reason = status.name.lower().replace("_", " ")
         self._logger.warning("no new steering angle: %s", reason, throttled=True, site="mpc")
-        return Ran(command, unsolved=True)
+        return Ran(command, unsolved=True, off_path=status in _OFF_PATH)

@@ -15,6 +15,10 @@ class InputFollower(Protocol):
     def incoming(self) -> Records:
         """Memory of POINT records that the next trajectory is decoded into."""
 
+    @property
+    def turned_points(self) -> int:
+        """Orientations of the trajectory in force that contradicted it, and were replaced."""
+
     def offer_incoming(self, n: int, stamp: float) -> Refusal:
         """Offer the first ``n`` points of ``incoming`` and their header stamp [s]."""
 

@@ -20,7 +20,7 @@ from safety_island.gate.content import ContentGate
 from safety_island.gate.newest import newest_first, overtaken
 from safety_island.gate.params import GateParams
 from safety_island.gate.rate import RateMeter
-from safety_island.gate.reason import SampleReason
+from safety_island.gate.reason import UNUSABLE, SampleReason
 from safety_island.gate.stamps import StampGate
 from safety_island.gate.writers import Writers
 from safety_island.messages.errors import DecodeError
@@ -73,6 +73,12 @@ class Input:
         """The SampleReason of the last one, NO_VALUE when none was refused."""
         self.accepted_at = -math.inf
         """Monotonic time [s] before which the sample in force was not received."""
+        self.replaced = 0
+        """Values replaced in the sample in force, since they contradicted others of it."""
+        self.replaced_total = 0
+        self.unusable_at = -math.inf
+        """Monotonic time [s] when a new sample of its publisher was last refused for what it is."""
+        self._taken_at = -math.inf
         self.clock_gap_s = 0.0
         """Between its stamps and the wall clock, as of the last ``watch``."""
         self.taken: Sample | None = None
@@ -88,6 +94,7 @@ class Input:
         self._decode = spec.decoder(follower)
         self._check = None if spec.check is None else partial(spec.check, ContentGate(params))
         self._offer, self._values = spec.offer(follower), spec.values
+        self._count = None if spec.replaced is None else partial(spec.replaced, follower)
         self._logger = logger
 
     def take(self, now: float, since: float) -> int:
@@ -95,6 +102,7 @@ class Input:
         samples = self.subscription.take_all()
         if not samples:
             return 0
+        self._taken_at = now
         if len(samples) == 1 and not self.writers.others:
             return 0 if self._accept(samples[0], now, since) else 1
         samples, refused = self._select(samples)
@@ -174,7 +182,23 @@ class Input:
         self.source_guid, self.message, self.accepted_at = guid, message, since
         self.accepted += 1
         self.refused_in_a_row = 0
+        if self._count is not None:
+            self._note_replaced(self._count())
         return True
+
+    def _note_replaced(self, count: int) -> None:
+        """Note how many values of the new sample were replaced."""
+        self.replaced = count
+        if count:
+            self.replaced_total += count
+            self.stamps.on_unusual()
+            text = "%d orientations contradict the path and were replaced, %d since the start"
+            site = f"{self.topic} replaced"
+            self._logger.warning(text, count, self.replaced_total, throttled=True, site=site)
+
+    def is_unusable(self, now: float) -> bool:
+        """Whether its publisher has sent samples within the age limit, but none can be used."""
+        return self.refused_in_a_row > 0 and now - self.unusable_at <= self.age_limit_s
 
     def _refuse(self, reason: SampleReason, detail: str = "") -> bool:
         detail = detail or reason.name.lower().replace("_", " ")
@@ -182,6 +206,8 @@ class Input:
         _COUNT.pack_into(self.refusals, _COUNT.size * reason, self.refused[reason])
         self.refused_in_a_row += 1
         self.last_refusal = reason
+        if reason in UNUSABLE:
+            self.unusable_at = self._taken_at
         site = f"{self.topic} {reason.name}"
         self._logger.warning("refused a sample: %s", detail, throttled=True, site=site)
         return False

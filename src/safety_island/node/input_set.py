@@ -18,6 +18,7 @@ from safety_island.node.inputs import INPUTS
 from safety_island.node.transport import Transport
 from safety_island.platform.interfaces import Clock, Logger
 
+TRAJECTORY = 0
 ODOMETRY = 1
 STEERING = 2
 OPERATION_MODE = 4
@@ -148,6 +149,12 @@ class InputSet:
         if all(too_old[:OPERATION_MODE]):
             return Blocked(Reason.PARTITION)
         return Blocked(Reason.INPUT_STALE, too_old.index(True))
+
+    def lacks_only_a_path(self, now: float) -> bool:
+        """Whether the trajectory alone is too old, and those that come cannot be used."""
+        too_old = list(map(gt, self.ages_s, self._age_limits))
+        is_alone = too_old[TRAJECTORY] and not any(too_old[TRAJECTORY + 1 :])
+        return is_alone and self.items[TRAJECTORY].is_unusable(now)
 
     def missing(self) -> list[str]:
         """Name the inputs of which no sample was ever accepted."""

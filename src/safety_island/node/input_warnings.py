@@ -70,7 +70,8 @@ class InputWarnings:
             return 0
         is_old = age_s > self._oldest_s[index]
         is_off = item.clock_gap_s > self._widest_gap_s[index]
-        return warnings(now, item.stamps, item.writers, item.rate, is_old, is_off)
+        is_turned = item.replaced > 0
+        return warnings(now, item.stamps, item.writers, item.rate, is_old, is_off, is_turned)
 
     def _tell(self, found: list[int]) -> None:
         self.bits = found

@@ -34,6 +34,8 @@ class InputSpec(NamedTuple):
     """Returns these values of a decoded sample."""
     age_limit_s: Callable[[GateParams], float] = lambda params: math.inf
     age_warning_s: Callable[[GateParams], float] = lambda params: math.inf
+    replaced: Callable[[InputFollower], int] | None = None
+    """Returns how many values of the sample in force were replaced for contradicting others."""
 
 
 def _plain(decode: Callable[[bytes], Any]) -> Callable[[InputFollower], Callable[[bytes], Any]]:
@@ -67,6 +69,7 @@ INPUTS = (
         attrgetter("offer_incoming"),
         _trajectory_values,
         lambda params: params.trajectory_age_limit,
+        replaced=attrgetter("turned_points"),
     ),
     InputSpec(
         "odometry",
