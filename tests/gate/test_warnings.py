@@ -21,10 +21,12 @@ def told(
     old: bool = False,
     off: bool = False,
     step_until: float = 8.0,
+    rate_error: float = 0.0,
 ) -> int:
     stamps, rate, writers = StampGate(0.5), RateMeter(8.0), Writers(3)
     stamps.delay_s, rate.too_low = delay_s, low
     stamps.step_told_until = step_until
+    stamps.sender.rate_error = rate_error
     if guids:
         writers.update(frozenset({A}), 0.0)
         writers.update(frozenset({B, A} if guids > 1 else {B}), 8.0)
@@ -45,7 +47,10 @@ def told(
         (InputWarning.SECOND_PUBLISHER, told(guids=2, now=9.01)),
         (InputWarning.CLOCK_STEP, told(step_until=9.0)),
         (InputWarning(0), told(step_until=8.99)),
-        (InputWarning(127), told(1.0, True, 2, 9.0, True, True, 9.5)),
+        (InputWarning.CLOCK_RATE, told(rate_error=-0.0101)),
+        (InputWarning.CLOCK_RATE, told(rate_error=0.0101)),
+        (InputWarning(0), told(rate_error=0.01)),
+        (InputWarning(255), told(1.0, True, 2, 9.0, True, True, 9.5, 1.0)),
     ],
 )
 def test_each_cause_has_its_bit(bits: InputWarning, found: int) -> None:
@@ -54,5 +59,5 @@ def test_each_cause_has_its_bit(bits: InputWarning, found: int) -> None:
 
 def test_every_warning_is_explained() -> None:
     assert list(EXPLANATIONS) == list(InputWarning)
-    assert [int(bit) for bit in InputWarning] == [1, 2, 4, 8, 16, 32, 64]
+    assert [int(bit) for bit in InputWarning] == [1, 2, 4, 8, 16, 32, 64, 128]
     assert all(meaning and action for meaning, action in EXPLANATIONS.values())

@@ -15,6 +15,7 @@ class InputWarning(IntFlag):
     SECOND_PUBLISHER = 16
     PUBLISHER_CHANGED = 32
     CLOCK_STEP = 64
+    CLOCK_RATE = 128
 
 
 EXPLANATIONS: dict[InputWarning, tuple[str, str]] = {
@@ -45,6 +46,11 @@ EXPLANATIONS: dict[InputWarning, tuple[str, str]] = {
     InputWarning.CLOCK_STEP: (
         "its stamps jumped against the island's own clock within the last second",
         "let the clocks of both machines be slewed, not set, while the vehicle drives",
+    ),
+    InputWarning.CLOCK_RATE: (
+        "the stamps of all inputs run slowly or fast, by more than 1 % of the island's own clock",
+        "nothing for a simulation that is slower or faster than real time (`use_sim_time`);"
+        " else look at the sender's clock, and whether the network holds all inputs up",
     ),
 }
 """Warning -> what it means, what to do."""

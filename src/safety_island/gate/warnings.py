@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from safety_island.gate.latched import LatchedGate
 from safety_island.gate.rate import RateMeter
 from safety_island.gate.stamps import StampGate
 from safety_island.gate.warning import InputWarning
@@ -10,10 +11,16 @@ from safety_island.gate.writers import Writers
 _AGE, _RATE, _CLOCK = int(InputWarning.AGE), int(InputWarning.RATE), int(InputWarning.CLOCK)
 _DELAY, _SECOND = int(InputWarning.DELAY), int(InputWarning.SECOND_PUBLISHER)
 _CHANGED, _STEP = int(InputWarning.PUBLISHER_CHANGED), int(InputWarning.CLOCK_STEP)
+_CLOCK_RATE = int(InputWarning.CLOCK_RATE)
 
 
 def warnings(
-    now: float, stamps: StampGate, writers: Writers, rate: RateMeter, is_old: bool, is_off: bool
+    now: float,
+    stamps: StampGate | LatchedGate,
+    writers: Writers,
+    rate: RateMeter,
+    is_old: bool,
+    is_off: bool,
 ) -> int:
     """Return the bits of InputWarning at ``now`` [s, monotonic].
 
@@ -32,4 +39,6 @@ def warnings(
         bits |= _CHANGED
     if now <= stamps.step_told_until:
         bits |= _STEP
+    if stamps.sender.is_off:
+        bits |= _CLOCK_RATE
     return bits
