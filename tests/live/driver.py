@@ -35,9 +35,10 @@ class Driver:
     """Publishes every input but the ``absent`` ones; the mode when it changes, as Autoware does.
 
     ``speed`` [m/s] NaN: odometry that is no number. ``ahead_ns``: of the clock of its stamps.
+    ``mode_depth``: how many modes it keeps for late subscriptions.
     """
 
-    def __init__(self, domain: int, mode: Mode = Mode.AUTONOMOUS) -> None:
+    def __init__(self, domain: int, mode: Mode = Mode.AUTONOMOUS, mode_depth: int = 1) -> None:
         self.speed = 1.0
         self.ahead_ns = 0
         self.absent: set[TopicEntry] = set()
@@ -46,7 +47,12 @@ class Driver:
         self._publishers = {
             entry: self._participant.publisher(entry.name, entry.type_name, entry.qos)
             for entry in topics.INPUTS
+            if entry is not topics.OPERATION_MODE
         }
+        entry = topics.OPERATION_MODE
+        qos = entry.qos.with_depth(mode_depth)
+        mode_publisher = self._participant.publisher(entry.name, entry.type_name, qos)
+        self._publishers[entry] = mode_publisher
         self._due = -math.inf
         self.tell(mode)
 
