@@ -9,7 +9,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "faults.md"
-ROWS = (*range(1, 52), *range(67, 78), *range(83, 87), 91, 94)
+ROWS = (*range(1, 52), *range(67, 78), 81, 82, *range(83, 89), 91, 94)
 """Rows of the catalogue that this campaign covers."""
 ELSEWHERE = (
     ROOT / "tests/can/test_fault_rows.py",
@@ -33,6 +33,13 @@ The campaign runs on virtual time, at periods of 150 ms and 30 ms where both hav
 
 What is decided, where another reaction could be expected:
 
+- 4, 88: what all inputs fall behind by is the sender's clock, not a delay, unless it grew while
+  nothing came. What one input falls behind the others by is delay.
+- 7, 34, 81: a mode whose stamp or source time is older than that of the one in force, by the same
+  writer, gives no autonomy; one that takes it away is accepted, once. Only where the other inputs
+  show that the clock was set back does an older stamp engage. What its writer has said before, byte
+  for byte, changes nothing. (It used to be that any older stamp counted: `src/safety_island/gate/`
+  `latched.py` has the rule.)
 - 35: a stamp from the far future may be that of a clock that was set. It is taken, and warned of
   (`CLOCK`, `CLOCK_STEP`).
 - 37: after a sleep nobody knows where the vehicle is, so there is no ramp, with `CAN_ONLY` neither;
@@ -118,6 +125,10 @@ FAULTS: dict[int, tuple[str, str, str]] = {
     75: ("restart of the bridge", "nothing old counts; its clock may be another", "A"),
     76: ("loop of bridges", "exit code 2, file and line", "start"),
     77: ("mode that toggles", "followed, no output jumps", "1 tick"),
+    81: ("latched history delivered again", "the newest by its writer stays in force", "0"),
+    82: ("second publisher that floods", "the owner is heard, no cost to a tick", "1 tick"),
+    87: ("sender's clock set by less than the limit", "goes on; no delay is remembered", "0"),
+    88: ("sender's clock at rate 0.5 to 2", "goes on; warned of (CLOCK_RATE)", "-"),
     83: ("publisher of weaker QoS joins behind the bridge", "those who were heard are heard", "0"),
     84: ("publisher gone behind the bridge", "as on the island's own domain", "lease 1 s"),
     85: (

@@ -8,6 +8,8 @@ from pathlib import Path
 import pytest
 
 from safety_island.cli.main import main
+from safety_island.control.status import Mode
+from safety_island.dds import topics
 from safety_island.gate.reason import SampleReason
 from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State
@@ -213,6 +215,76 @@ def test_row_75_a_new_main_compute_may_have_another_clock(period_s: float, skew_
     scene.run(0.45 + 0.2 + period_s)
     assert all(scene.input(key).accepted > accepted[key] for key in AGED)
     rearms(scene)  # its inputs were lost, and nobody had left autonomous mode
+
+
+@BOTH
+@pytest.mark.parametrize("per_tick", [1, 3, 10])
+def test_row_81_a_mode_delivered_again_stays_what_it_was(period_s: float, per_tick: int) -> None:
+    """The match was lost and renewed; the history comes oldest first, over several ticks."""
+    scene = Scene(period_s).drive()
+    scene.world._engage = False
+    history: list[bytes] = []
+    for mode in (Mode.STOP, Mode.AUTONOMOUS) * 4 + (Mode.STOP,):
+        scene.world.mode = mode
+        scene.main_compute.publish_vehicle()
+        history += scene.wires["operation_mode"].sent
+        scene.run(2 * period_s)
+    assert scene.rows[-1].state is State.READY
+    for _ in range(2):
+        rest = list(history)
+        while rest:
+            scene.wires["operation_mode"].release(rest[:per_tick])
+            del rest[:per_tick]
+            assert scene.tick().state is State.READY
+    scene.world.mode = Mode.AUTONOMOUS
+    scene.main_compute.publish_vehicle()
+    assert scene.run(2 * period_s)[-1].state is State.ACTIVE
+
+
+@BOTH
+def test_row_81_a_publisher_that_was_out_of_sight_for_a_while(period_s: float) -> None:
+    """Its lease lapsed, and it is there again: what it said last counts, and nothing older."""
+    scene = Scene(period_s).drive()
+    scene.world._engage = False
+    engaged = scene.wires["operation_mode"].sent[0]
+    scene.disengage()
+    assert scene.run(1.0)[-1].state is State.READY
+    stopped = scene.wires["operation_mode"].sent[0]
+    topic = scene.domain._topics[topics.OPERATION_MODE.name]
+    writers = topic.writers
+    for alive in (frozenset[bytes](), writers):
+        topic.writers = alive
+        scene.domain._changes += 1
+        scene.tick()
+    for data in (engaged, stopped):
+        scene.wires["operation_mode"].release([data])
+        row = scene.tick()
+        assert (row.state, row.reason) == (State.READY, Reason.NOT_AUTONOMOUS)
+
+
+@BOTH
+@EACH
+@pytest.mark.parametrize("rate_hz", [1000, 10_000])
+def test_row_82_a_flood_leaves_the_owner_its_room(key: str, period_s: float, rate_hz: int) -> None:
+    """Not one sample of the owner is pushed out, and none of the flood is looked at."""
+    twin, scene = Scene(period_s).drive(), Scene(period_s).drive()
+    intruder = scene.wires[key].intrude()
+    data = scene.wires[key].sent[0]
+
+    def flood() -> None:
+        for _ in range(rate_hz // 1000):
+            intruder.write(data)
+        scene.clock.call_at(scene.clock.monotonic_ns() + 1_000_000, flood)
+
+    flood()
+    assert stays_active(scene, 1.5) == stays_active(twin, 1.5)
+    item, other = scene.input(key), twin.input(key)
+    assert item.subscription.received == other.subscription.received
+    assert (item.accepted, item.superseded) == (other.accepted, other.superseded)
+    assert item.refused[SampleReason.OTHER_PUBLISHER] > rate_hz
+    scene.world._engage = False
+    scene.disengage()
+    assert scene.run(2 * max(period_s, 0.03))[-1].state is State.READY
 
 
 def test_row_76_a_bridge_that_closes_a_loop_does_not_start(

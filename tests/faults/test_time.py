@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from itertools import pairwise
+from random import Random
 
 import pytest
 
@@ -14,6 +15,7 @@ from safety_island.life_cycle.state import State
 from tests.faults import wire
 from tests.faults.checks import (
     BOTH,
+    LIMIT_S,
     bound,
     rearms,
     recovers,
@@ -93,8 +95,8 @@ def test_row_34_a_skew_that_comes_on_the_way_ends_nothing(skew_ms: int) -> None:
 
 
 @BOTH
-def test_row_34_a_change_of_mode_is_heard_after_a_step_back(period_s: float) -> None:
-    """It is told once: taken for overtaken, it would be lost for good."""
+def test_row_34_a_stop_is_heard_after_a_step_back(period_s: float) -> None:
+    """Its stamp is older than that of the engagement, and it is told once."""
     scene = Scene(period_s).drive()
     scene.remote_clock.set_wall_offset_ns(EPOCH_NS - HOUR_NS)
     scene.world._engage = False
@@ -102,6 +104,38 @@ def test_row_34_a_change_of_mode_is_heard_after_a_step_back(period_s: float) -> 
     warnings = warned(scene)
     assert scene.run(0.3)[-1].state is State.READY
     assert warnings["operation_mode"] & STEP
+
+
+@BOTH
+def test_row_34_an_engagement_is_heard_after_a_step_back(period_s: float) -> None:
+    """Older than the STOP before it: the other inputs show that the clock was set back."""
+    scene = Scene(period_s).drive()
+    scene.world._engage = False
+    scene.disengage()
+    assert scene.run(1.0)[-1].state is State.READY
+    scene.remote_clock.set_wall_offset_ns(EPOCH_NS - HOUR_NS)
+    scene.run(1.0)
+    scene.world._engage = True
+    assert scene.run(1.0)[-1].state is State.ACTIVE
+
+
+@BOTH
+@pytest.mark.parametrize("step_ns", [0, -HOUR_NS], ids=["same_clock", "set_back"])
+def test_row_34_an_old_engagement_is_not_taken_for_one_by_a_clock_set_back(
+    period_s: float, step_ns: int
+) -> None:
+    """A stamp that is older gives no autonomy by itself, whatever was done to the clock."""
+    scene = Scene(period_s).drive()
+    scene.world._engage = False
+    ((_, old),) = wire.stamped(*divmod(scene.remote_clock.wall_ns() - 10**9, 10**9))(
+        scene.wires["operation_mode"].sent[0]
+    )
+    scene.disengage()
+    assert scene.run(1.0)[-1].state is State.READY
+    scene.remote_clock.set_wall_offset_ns(EPOCH_NS + step_ns)
+    scene.run(1.0)
+    scene.wires["operation_mode"].release([old])
+    assert {row.state for row in scene.run(1.0)} == {State.READY}
 
 
 def test_row_34_stamps_keep_no_dead_input_alive() -> None:
@@ -186,3 +220,87 @@ def test_row_37_can_only_has_no_ramp_after_a_sleep() -> None:
     scene = Scene(has_ramp=True).drive()
     scene.clock.sleep_ns(60 * 10**9)
     assert {row.output for row in scene.run(1.0)} == {"silent"}
+
+
+STEPS_S = {
+    "two": [(1.0, -0.4), (2.5, -0.6)],
+    "one_after_the_other": [(1.0, -0.4), (0.2, -0.6)],
+    "a_hundred_seconds_apart": [(1.0, -0.6), (100.0, -0.6)],
+    "many_small_ones": [(1.0, -0.1)] * 20,
+    "below_a_period": [(0.5, -0.02)] * 60,
+    "to_and_fro": [(1.0, 0.4), (1.0, -0.4), (1.0, 0.3), (1.0, -0.3)] * 4,
+}
+"""After how long [s] the clock of the main compute is set by how much [s], again and again."""
+
+
+@BOTH
+@pytest.mark.parametrize("steps", STEPS_S.values(), ids=STEPS_S.keys())
+def test_row_87_steps_below_the_age_limit_are_no_delay(
+    period_s: float, steps: list[tuple[float, float]]
+) -> None:
+    scene = Scene(period_s).drive()
+    warnings = warned(scene)
+    offset_ns = EPOCH_NS
+    for after_s, step_s in steps:
+        stays_active(scene, after_s)
+        offset_ns += round(step_s * 1e9)
+        scene.remote_clock.set_wall_offset_ns(offset_ns)
+    stays_active(scene, 5.0)
+    assert all(scene.input(key).stamps.delay_s < LIMIT_S[key] * 0.6 for key in AGED)
+    if min(step for _, step in steps) < -0.3:
+        assert all(warnings[key] & STEP for key in AGED[1:])
+
+
+@BOTH
+def test_row_87_any_steps(period_s: float, random: Random) -> None:
+    scene = Scene(period_s).drive()
+    offset_ns = EPOCH_NS
+    for _ in range(40):
+        stays_active(scene, random.uniform(0.5, 4.0))
+        offset_ns += random.randint(-850_000_000, 850_000_000)
+        scene.remote_clock.set_wall_offset_ns(offset_ns)
+    stays_active(scene, 5.0)
+
+
+def run_at(scene: Scene, rate: float) -> None:
+    """Let the clock of the main compute run at another rate from now on."""
+    clock = scene.remote_clock
+    wall_ns, since_ns = clock.wall_ns(), clock.monotonic_ns()
+    clock.wall_ns = (  # type: ignore[method-assign]
+        lambda: wall_ns + round(rate * (clock.monotonic_ns() - since_ns))
+    )
+
+
+@BOTH
+@pytest.mark.parametrize("rate", [0.5, 0.8, 0.95, 1.05, 1.5, 2.0])
+def test_row_88_a_clock_at_another_rate_is_driven_by(period_s: float, rate: float) -> None:
+    """Simulation time: the stamps of all inputs fall behind, or run ahead, together."""
+    scene = Scene(period_s).drive()
+    warnings = warned(scene)
+    run_at(scene, rate)
+    stays_active(scene, 30.0)
+    assert all(warnings[key] & InputWarning.CLOCK_RATE for key in AGED)
+    assert "run slowly or fast" in scene.log_text
+    run_at(scene, 1.0)
+    stays_active(scene, 10.0)
+    assert not any(bits & InputWarning.CLOCK_RATE for bits in scene.node.inputs.warnings)
+
+
+@BOTH
+def test_row_88_a_lost_input_ends_the_output_all_the_same(period_s: float) -> None:
+    scene = Scene(period_s).drive()
+    run_at(scene, 0.5)
+    stays_active(scene, 5.0)
+    silent_within(scene, scene.inject(wire.drop, "odometry"), bound("odometry", period_s))
+
+
+@BOTH
+@pytest.mark.parametrize("rate", [0.5, 0.8])
+def test_row_88_a_delay_of_one_input_is_found_by_a_slow_clock(period_s: float, rate: float) -> None:
+    scene = Scene(period_s).drive()
+    run_at(scene, rate)
+    stays_active(scene, 5.0)
+    since = scene.now
+    scene.inject(lambda data: [((scene.now - since) * 0.5, data)], "odometry")
+    silent_within(scene, since, 4.0, margin_s=5.0)
+    assert scene.refused("odometry", SampleReason.DELAYED) > 0

@@ -7,6 +7,7 @@ from random import Random
 
 import pytest
 
+from safety_island.control.status import Mode
 from safety_island.gate.reason import SampleReason
 from safety_island.gate.warning import InputWarning
 from safety_island.life_cycle.reason import Reason
@@ -149,6 +150,20 @@ def test_row_04_a_delay_within_the_limit_is_measured(period_s: float, delay_ms: 
 
 @BOTH
 @pytest.mark.parametrize("key", AGED)
+@pytest.mark.parametrize("rate", [0.05, 0.5])
+def test_row_04_a_queue_that_builds_up_is_a_delay(key: str, rate: float, period_s: float) -> None:
+    """Each sample of one input takes longer than the one before: no clock, the others show it."""
+    scene = Scene(period_s).drive()
+    since = scene.now
+    scene.inject(lambda data: [((scene.now - since) * rate, data)], key)
+    noise_s = period_s + 0.025  # of a delay that is seen once a tick
+    grown_s = (LIMIT_S[key] + noise_s) * (1.0 + rate) / (rate - 0.002)
+    silent_within(scene, since, grown_s + bound(key, period_s), margin_s=5.0)
+    assert scene.refused(key, SampleReason.DELAYED) > 0
+
+
+@BOTH
+@pytest.mark.parametrize("key", AGED)
 def test_row_04_a_delay_beyond_the_limit_counts_as_lost(key: str, period_s: float) -> None:
     scene = Scene(period_s).drive()
     warnings = warned(scene)
@@ -216,6 +231,47 @@ def test_row_07_reordered_messages_never_lead_back(period_s: float) -> None:
     assert all(a <= b for x, y in pairwise(stamps) for a, b in zip(x, y, strict=True))
     for key in AGED:
         assert scene.input(key).overtaken + scene.refused(key, SampleReason.OLDER) > 0
+
+
+@BOTH
+@pytest.mark.parametrize("last", [Mode.STOP, Mode.AUTONOMOUS], ids=lambda mode: mode.name)
+def test_row_07_a_mode_that_was_overtaken_does_not_count(period_s: float, last: Mode) -> None:
+    """Of two modes in one tick the one that was said last, whichever arrives last."""
+    scene = Scene(period_s).drive()
+    scene.world._engage = False
+    first = Mode.STOP if last is Mode.AUTONOMOUS else Mode.AUTONOMOUS
+    scene.world.mode = last
+    scene.run(1.0)
+    for _ in range(3):
+        scene.inject(wire.swap(), "operation_mode")
+        for mode in (first, last):
+            scene.world.mode = mode
+            scene.main_compute.publish_vehicle()
+            scene.idle(0.002)
+        scene.run(4 * period_s)
+        assert scene.input("operation_mode").message.mode == last
+        driving = last is Mode.AUTONOMOUS
+        assert scene.rows[-1].state is (State.ACTIVE if driving else State.READY)
+    assert scene.input("operation_mode").overtaken == 3
+
+
+@BOTH
+def test_row_07_an_old_mode_that_comes_late_gives_no_autonomy(period_s: float) -> None:
+    """AUTONOMOUS, then STOP; what was said first arrives some ticks after it."""
+    scene = Scene(period_s).drive()
+    scene.world._engage = False
+    scene.disengage()
+    assert scene.run(1.0)[-1].state is State.READY
+    kept: list[bytes] = []
+    scene.inject(wire.once(wire.keep(kept)), "operation_mode")
+    for mode in (Mode.AUTONOMOUS, Mode.STOP):
+        scene.world.mode = mode
+        scene.main_compute.publish_vehicle()
+        scene.idle(0.002)
+    scene.run(1.0)
+    scene.wires["operation_mode"].release(kept)
+    assert {row.state for row in scene.run(1.0)} == {State.READY}
+    assert scene.refused("operation_mode", SampleReason.OLDER) == 1
 
 
 @BOTH

@@ -59,3 +59,15 @@ def test_without_an_age_limit_nothing_is_ever_found() -> None:
     search = ClockSearch(math.inf)
     assert not search.finds(5, 9.0, NEVER)
     assert not search.finds(6, 1e9, NEVER)
+
+
+def test_a_stamp_goes_on_from_one_of_an_earlier_tick() -> None:
+    search = ClockSearch(0.5)
+    assert not search.goes_on(9.0)
+    search.finds(5, 9.0, NEVER)
+    assert not search.goes_on(9.0)
+    search.finds(6, 9.125, NEVER)
+    assert search.goes_on(9.125)
+    assert not search.goes_on(9.25)
+    search.finds(6, 9.25, NEVER)
+    assert not search.goes_on(9.25)

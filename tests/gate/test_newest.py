@@ -5,10 +5,11 @@ from __future__ import annotations
 import struct
 from typing import NamedTuple
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from safety_island.gate.newest import TRIES, newest_first, overtaken
+from safety_island.gate.newest import NO_STAMP, TRIES, in_order, newest_first, overtaken, read_stamp
 
 
 class Message(NamedTuple):
@@ -44,6 +45,20 @@ def test_what_has_no_stamp_comes_last() -> None:
     assert newest_first([CUT, at(-2)]) == [at(-2), CUT]
 
 
+def test_the_stamp_of_a_message() -> None:
+    assert read_stamp(at(5, 7).data) == (5, 7)
+    assert read_stamp(at(-5, 7).data) == (-5, 7)
+    for message in (BIG_ENDIAN, CUT):
+        assert read_stamp(message.data) == NO_STAMP
+
+
+@pytest.mark.parametrize(
+    "samples", [[at(5)], [at(1), at(2), at(3), at(4), at(4)], [at(1), at(3), at(2)], [CUT, at(1)]]
+)
+def test_both_at_once(samples: list[Message]) -> None:
+    assert in_order(samples) == (newest_first(samples), overtaken(samples))
+
+
 def test_no_more_than_three_are_tried() -> None:
     assert TRIES == 3
     assert newest_first([at(i) for i in range(9)]) == [at(8), at(7), at(6)]
@@ -66,6 +81,7 @@ stamps = st.tuples(st.integers(-5, 5), st.integers(0, 5))
 def test_any_stream(times: list[tuple[int, int]]) -> None:
     samples = [at(*time, tail=bytes([i])) for i, time in enumerate(times)]
     found = newest_first(samples)
+    assert in_order(samples) == (found, overtaken(samples))
     assert len(found) == min(len(samples), TRIES)
     assert len(set(found)) == len(found) and set(found) <= set(samples)
     if any(time >= (0, 0) for time in times):

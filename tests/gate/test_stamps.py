@@ -8,6 +8,7 @@ import pytest
 
 from safety_island.gate.clock_search import SEARCH_SHARE
 from safety_island.gate.reason import SampleReason
+from safety_island.gate.sender_clock import SenderClock
 from safety_island.gate.stamps import (
     BEGIN_ANEW_S,
     FORGET_RATE,
@@ -147,6 +148,11 @@ class TestOlder:
         assert offer(gate, 50.375, 1000.5) is None
         assert gate.steps_back == 1
 
+    def test_it_may_have_come_to_the_held_stamp_by_then(self, gate: StampGate) -> None:
+        found = [offer(gate, 99.75 + 0.125 * i, 1000.125 + 0.125 * i) for i in range(3)]
+        assert found == [OLDER, OLDER, None]
+        assert (gate.steps_back, gate.delay_s) == (1, 0.0)
+
     def test_just_before_it_does_not(self, gate: StampGate) -> None:
         assert offer(gate, 50.0, 1000.125) is OLDER
         assert offer(gate, 50.25, 1000.3749) is OLDER
@@ -188,14 +194,6 @@ class TestOlder:
         found = [offer(gate, 50.0 + 0.25 * i, 1000.125 + 0.25 * i) for i in range(2)]
         assert found == [OLDER, None]
         assert offer(gate, 50.125, 1000.375) is OLDER
-
-    def test_without_an_age_limit_the_order_of_arrival_counts(self) -> None:
-        """What is sent on change is not told again: a STOP with an older stamp must not be lost."""
-        gate = StampGate()
-        offer(gate, 100.0, 1000.0)
-        assert [offer(gate, 50.0 + i, 1001.0 + i) for i in range(3)] == [None] * 3
-        assert offer(gate, 20.0, 1004.0) is None
-        assert gate.steps_back == 2
 
 
 class TestSuccessor:
@@ -302,36 +300,212 @@ class TestStep:
         assert offer(gate, 50.0, 1020.5) is None
         assert (gate.steps_back, gate.step_told_until) == (0, 1011.25)
 
-    def test_without_an_age_limit_only_back(self) -> None:
-        """A first sample that was said long ago is no measure for the next one."""
-        gate = StampGate()
+
+class TestSetBackByLessThanTheLimit:
+    """Stamps that were older, and have caught up before they were believed: no delay."""
+
+    @staticmethod
+    def drive(gate: StampGate, off_s: float, begin: int, count: int) -> list[SampleReason]:
+        """Samples every 1/16 s by a clock that is off; what was refused."""
+        times = [(begin + i) / 16 for i in range(count)]
+        found = [offer(gate, 100.0 + off_s + at, 1000.0 + at) for at in times]
+        return [reason for reason in found if reason is not None]
+
+    def test_it_is_not_remembered_as_a_delay(self, gate: StampGate) -> None:
+        assert self.drive(gate, -0.15, 1, 2) == [OLDER] * 2
+        assert offer(gate, 100.0375, 1000.1875) is None
+        assert (gate.delay_s, gate.steps, gate.steps_back) == (0.0, 1, 0)
+        assert gate.step_told_until == -math.inf  # it may as well have been one late sample
+
+    def test_one_that_is_no_jitter_is_told(self) -> None:
+        gate = StampGate(1.25)
         offer(gate, 100.0, 1000.0)
-        offer(gate, 900.0, 1001.0)
-        assert gate.step_told_until == -math.inf
-        offer(gate, 800.0, 1002.0)
-        assert (gate.steps_back, gate.step_told_until) == (1, 1003.0)
+        assert self.drive(gate, -0.65, 1, 12) == [OLDER] * 10
+        assert (gate.delay_s, gate.steps, gate.steps_back) == (0.0, 1, 0)
+        assert gate.step_told_until == 1000.0 + 11 / 16 + STEP_TOLD_S
+
+    def test_however_often(self, gate: StampGate) -> None:
+        assert self.drive(gate, 0.0, 1, 159) == []
+        for step in range(1, 30):
+            reasons = self.drive(gate, -0.2 * step, 160 * step, 160)
+            assert set(reasons) <= {OLDER} and len(reasons) < 5
+            assert gate.delay_s < 0.05
+
+    def test_a_late_sample_before_one_in_time_is_no_clock(self, gate: StampGate) -> None:
+        assert offer(gate, 99.9, 1000.125) is OLDER
+        assert offer(gate, 100.25, 1000.25) is None
+        assert gate.steps == 0
+
+    def test_a_claim_beyond_the_limit_ago_is_none(self, gate: StampGate) -> None:
+        assert offer(gate, 99.875, 1000.125) is OLDER
+        assert offer(gate, 100.4, 1000.6251) is None
+        assert gate.steps == 0
+        assert gate.delay_s == pytest.approx(0.2245, abs=1e-3)
+
+    def test_a_claim_of_the_limit_ago_is_one(self, gate: StampGate) -> None:
+        assert offer(gate, 99.875, 1000.125) is OLDER
+        assert offer(gate, 100.375, 1000.625) is None
+        assert gate.steps == 1
+
+    def test_it_must_be_more_than_half_of_the_claim(self, gate: StampGate) -> None:
+        assert offer(gate, 99.875, 1000.125) is OLDER  # 1/4 s behind
+        assert offer(gate, 100.1253, 1000.25) is None
+        assert gate.steps == 0
+
+    def test_a_stamp_that_stands_still_is_a_claim_as_well(self, gate: StampGate) -> None:
+        assert offer(gate, 100.0, 1000.1875) is SampleReason.STAMP_STANDS_STILL
+        assert offer(gate, 100.0625, 1000.25) is None
+        assert (gate.steps, gate.delay_s) == (1, 0.0)
+
+    def test_a_successor_has_no_claim_of_another(self, gate: StampGate) -> None:
+        assert offer(gate, 99.875, 1000.125) is OLDER
+        assert gate.judge(stamp(100.0625), b"other", 1000.25, is_successor=True) is None
+        gate.hold(b"other", 1000.25)
+        assert gate.steps == 0
 
 
-class TestSentOnChange:
-    """Without an age limit nothing says the same again: what is new must be heard."""
+def two() -> tuple[StampGate, StampGate]:
+    """Two inputs of one sender, with samples every 1/16 s for a second."""
+    sender = SenderClock()
+    both = StampGate(0.5, sender), StampGate(0.5, sender)
+    for i in range(17):
+        for gate in both:
+            assert offer(gate, 100.0 + i / 16, 1000.0 + i / 16) is None
+    return both
 
-    @pytest.fixture
-    def told(self) -> StampGate:
-        gate = StampGate()
-        offer(gate, 100.0, 1000.0, b"autonomous")
-        return gate
 
-    @pytest.mark.parametrize("is_successor", [False, True])
-    def test_another_message_with_the_same_stamp_is_taken(
-        self, told: StampGate, is_successor: bool
-    ) -> None:
-        assert told.judge(stamp(100.0), b"stop", 1000.125, is_successor) is None
-        told.hold(b"stop", 1000.125)
-        assert (told.steps_back, told.step_told_until) == (0, -math.inf)
-        assert offer(told, 100.0, 1000.25, b"autonomous") is None
+class TestCommonClock:
+    """What all inputs share is the clock, but for what came after a gap."""
 
-    def test_the_same_bytes_are_not(self, told: StampGate) -> None:
-        assert offer(told, 100.0, 1000.125, b"autonomous") is SampleReason.DUPLICATE
+    def test_what_all_fall_behind_by_is_the_clock(self) -> None:
+        both = two()
+        for i in range(1, 160):
+            for gate in both:
+                assert offer(gate, 101.0 + i / 32, 1001.0 + i / 16) is None
+                assert gate.delay_s <= 0.25 + 1 / 32
+
+    def test_what_one_falls_behind_by_is_delay(self) -> None:
+        one, other = two()
+        found = []
+        for i in range(1, 32):
+            found.append(offer(one, 101.0 + i / 32, 1001.0 + i / 16))
+            assert offer(other, 101.0 + i / 16, 1001.0 + i / 16) is None
+        assert found[:15] == [None] * 15
+        assert set(found[17:]) == {DELAYED}
+
+    def test_what_all_fall_behind_by_in_a_gap_is_delay(self) -> None:
+        both = two()
+        for i in range(1, 160):
+            for gate in both:
+                assert offer(gate, 101.0 + i / 16, 1001.375 + i / 16) is None
+        for gate in both:
+            assert gate.delay_s == pytest.approx(0.375, abs=0.02)
+            assert gate.steps == 0
+
+    def test_beyond_the_limit_all_that_is_the_clock_s_is_forgiven(self) -> None:
+        """A delay beside a clock that runs slowly."""
+        both = two()
+        for gate in both:
+            assert offer(gate, 101.0625, 1001.4375) is None  # 3/8 s after a gap
+        for i in range(2, 160):
+            for gate in both:
+                assert offer(gate, 101.03125 + i / 32, 1001.375 + i / 16) is None
+
+    def test_a_delay_that_has_ended_is_forgotten(self) -> None:
+        """What all fall behind by later is the clock again."""
+        both = two()
+        for gate in both:
+            assert offer(gate, 101.0625, 1001.4375) is None
+            assert offer(gate, 101.5, 1001.5) is None
+            assert (gate.delay_s, gate.fallen_s()) == (0.0, 0.0)
+        for i in range(1, 160):
+            for gate in both:
+                assert offer(gate, 101.5 + i / 32, 1001.5 + i / 16) is None
+
+    def test_gaps_that_come_again_are_usual(self) -> None:
+        """A sender in slow motion: each gap is longer than before, each step as long."""
+        both = two()
+        for i in range(1, 400):
+            for gate in both:
+                assert offer(gate, 101.0 + i / 16, 1001.0 + i / 8) is None
+                if i % 4 == 0:
+                    gate.fade()
+
+    def test_a_gap_is_unusual_again_after_half_a_minute(self) -> None:
+        both = two()
+        for gate in both:
+            assert offer(gate, 101.25, 1001.25) is None
+            for _ in range(60):
+                gate.fade()
+            assert offer(gate, 101.3125, 1001.3125) is None
+            assert offer(gate, 101.5, 1001.6875) is None
+            assert gate.fallen_s() == pytest.approx(0.0, abs=1e-3)
+            assert gate.delay_s == pytest.approx(0.1875, abs=1e-3)
+
+    def test_a_refused_sample_is_no_gap(self) -> None:
+        one, _ = two()
+        for i in (1, 2):
+            assert offer(one, 100.99, 1001.0 + i / 16) is OLDER
+        assert offer(one, 101.125, 1001.1875) is None
+        assert one.fallen_s() == pytest.approx(0.0625, abs=1e-3)
+
+    def test_one_alone_is_not_held_against_one_that_is_gone(self) -> None:
+        one, _ = two()
+        found = [offer(one, 101.0 + i / 32, 1001.0 + i / 16) for i in range(1, 40)]
+        assert DELAYED in found
+
+    def test_one_that_begins_is_not_held_against_the_others(self) -> None:
+        both = two()
+        late = StampGate(0.5, both[0].sender)
+        for i in range(1, 320):
+            for gate in both if i < 160 else (*both, late):
+                assert offer(gate, 101.0 + i / 32, 1001.0 + i / 16) is None
+
+    def test_forgiveness_ends_with_a_clock_that_was_set_forward(self) -> None:
+        both = two()
+        for i in range(1, 9):
+            for gate in both:
+                assert offer(gate, 101.0 + i / 16 - 0.03 * i, 1001.0 + i / 16) is None
+        for gate in both:
+            assert offer(gate, 110.0, 1001.5625) is None
+            assert (gate.delay_s, gate.fallen_s()) == (0.0, 0.0)
+
+
+class TestTwoThatStep:
+    """What two inputs see at once needs no long proof."""
+
+    def test_the_second_sample_is_accepted(self) -> None:
+        both = two()
+        times = [i / 16 for i in range(1, 4)]
+        found = [[offer(gate, 91.0 + at, 1001.0 + at) for gate in both] for at in times]
+        assert found == [[OLDER] * 2, [None] * 2, [None] * 2]
+        assert [gate.steps_back for gate in both] == [1, 1]
+
+    def test_one_alone_waits_for_half_the_limit(self) -> None:
+        one, other = two()
+        found = []
+        for i in range(1, 6):
+            found.append(offer(one, 91.0 + i / 16, 1001.0 + i / 16))
+            assert offer(other, 101.0 + i / 16, 1001.0 + i / 16) is None
+        assert found == [OLDER] * 4 + [None]
+
+    def test_steps_of_another_size_do_not_count(self) -> None:
+        one, other = two()
+        for i in range(1, 4):
+            assert offer(one, 91.0 + i / 16, 1001.0 + i / 16) is OLDER
+            assert offer(other, 90.8 + i / 16, 1001.0 + i / 16) is OLDER
+
+    def test_small_ones_may_be_samples_that_overtook_each_other(self) -> None:
+        both = two()
+        for i in (1, 2):
+            for gate in both:
+                assert offer(gate, 100.8125 + i / 16, 1001.0 + i / 16) is OLDER
+
+    def test_stamps_that_stand_still_are_no_clock(self) -> None:
+        both = two()
+        for i in range(1, 20):
+            for gate in both:
+                assert offer(gate, 101.0, 1001.0 + i / 16) is SampleReason.STAMP_STANDS_STILL
 
 
 class TestBeginAnew:

@@ -22,10 +22,12 @@ def told(
     off: bool = False,
     step_until: float = 8.0,
     turned: bool = False,
+    rate_error: float = 0.0,
 ) -> int:
     stamps, rate, writers = StampGate(0.5), RateMeter(8.0), Writers(3)
     stamps.delay_s, rate.too_low = delay_s, low
     stamps.step_told_until = step_until
+    stamps.sender.rate_error = rate_error
     if guids:
         writers.update(frozenset({A}), 0.0)
         writers.update(frozenset({B, A} if guids > 1 else {B}), 8.0)
@@ -47,7 +49,10 @@ def told(
         (InputWarning.CLOCK_STEP, told(step_until=9.0)),
         (InputWarning(0), told(step_until=8.99)),
         (InputWarning.YAW_REPLACED, told(turned=True)),
-        (InputWarning(255), told(1.0, True, 2, 9.0, True, True, 9.5, True)),
+        (InputWarning.CLOCK_RATE, told(rate_error=-0.0101)),
+        (InputWarning.CLOCK_RATE, told(rate_error=0.0101)),
+        (InputWarning(0), told(rate_error=0.01)),
+        (InputWarning(511), told(1.0, True, 2, 9.0, True, True, 9.5, True, 1.0)),
     ],
 )
 def test_each_cause_has_its_bit(bits: InputWarning, found: int) -> None:

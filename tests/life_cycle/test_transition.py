@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import product
+from typing import Any
 
 import pytest
 
@@ -78,7 +79,8 @@ def lives(state: State) -> list[Life]:
 
 
 def conditions(blocked: tuple[Reason, ...]) -> Iterator[Conditions]:
-    for values in product((Reason.NONE, *blocked), DISENGAGED, BARS, *[BOOLS] * 5):
+    rows: Iterator[Any] = product((Reason.NONE, *blocked), DISENGAGED, BARS, *[BOOLS] * 5)
+    for values in rows:
         yield Conditions(*values)
 
 

@@ -36,13 +36,15 @@ class Driver:
     """Publishes every input but the ``absent`` ones; the mode when it changes, as Autoware does.
 
     ``entries``: on which topics there is a publisher at all. ``speed`` [m/s] NaN: odometry that is
-    no number. ``ahead_ns``: of the clock of its stamps.
+    no number. ``ahead_ns``: of the clock of its stamps. ``mode_depth``: how many modes it keeps for
+    late subscriptions.
     """
 
     def __init__(
         self,
         domain: int,
         mode: Mode = Mode.AUTONOMOUS,
+        mode_depth: int = 1,
         *,
         entries: Iterable[TopicEntry] = topics.INPUTS,
     ) -> None:
@@ -54,7 +56,13 @@ class Driver:
         self._publishers = {
             entry: self._participant.publisher(entry.name, entry.type_name, entry.qos)
             for entry in entries
+            if entry is not topics.OPERATION_MODE
         }
+        if topics.OPERATION_MODE in entries:
+            entry = topics.OPERATION_MODE
+            qos = entry.qos.with_depth(mode_depth)
+            mode_publisher = self._participant.publisher(entry.name, entry.type_name, qos)
+            self._publishers[entry] = mode_publisher
         self._due = -math.inf
         if topics.OPERATION_MODE in self._publishers:
             self.tell(mode)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+
 import pytest
 
 from safety_island.dds import topics
@@ -40,3 +42,41 @@ def test_a_clock_that_is_set_is_told_and_ends_nothing(
         State.ACTIVE,
         InputWarning.CLOCK,
     )
+
+
+@pytest.mark.parametrize("rate", [0.5, 2.0])
+def test_a_clock_that_runs_at_another_rate_is_told_and_ends_nothing(
+    scene: Scene, driver: Driver, rate: float
+) -> None:
+    """Simulation time: the stamps fall behind, or run ahead."""
+    driver.engage(scene)
+    begin = time.monotonic()
+
+    def send() -> None:
+        driver.ahead_ns = round((rate - 1.0) * (time.monotonic() - begin) * 1e9)
+        driver.send()
+
+    scene.meanwhile = send
+    since = len(scene.island.heard[topics.STATUS])
+    scene.status(
+        lambda status: all(row(status, entry).warnings & InputWarning.CLOCK_RATE for entry in AGED),
+        "the rate is told",
+    )
+    statuses = scene.island.heard[topics.STATUS][since:]
+    assert {one.message.state for one in statuses} == {State.ACTIVE}
+
+
+def test_steps_below_the_age_limit_end_nothing(scene: Scene, driver: Driver) -> None:
+    driver.engage(scene)
+    since = len(scene.island.heard[topics.STATUS])
+    for step_ns in (-400_000_000, -600_000_000, -600_000_000):
+        driver.ahead_ns += step_ns
+        for wanted in (True, False):
+
+            def is_told(status: Status, wanted: bool = wanted) -> bool:
+                bits = [item.warnings & InputWarning.CLOCK_STEP for item in status.inputs]
+                return any(bits) is wanted
+
+            scene.status(is_told, "the step is told, and over")
+    statuses = scene.island.heard[topics.STATUS][since:]
+    assert {one.message.state for one in statuses} == {State.ACTIVE}

@@ -69,3 +69,37 @@ def test_names_are_those_of_ros(domain: MemoryDomain) -> None:
         domain.publisher("a b", TOPIC[1], DEFAULT)
     with pytest.raises(UnknownTypeError):
         domain.publisher("/a", "nav_msgs/msg/Odometri", DEFAULT)
+
+
+def test_what_others_say_is_kept_out(domain: MemoryDomain) -> None:
+    reader = domain.subscription(*TOPIC, DEFAULT)
+    own, other = domain.publisher(*TOPIC, DEFAULT), domain.publisher(*TOPIC, DEFAULT)
+    assert reader.keep_to(own.guid)
+    for _ in range(100):
+        other.write(b"other")
+    own.write(b"own")
+    assert [sample.data for sample in reader.take_all()] == [b"own"]
+    assert (reader.received, reader.kept_out) == (1, 100)
+    assert reader.keep_to(b"")
+    other.write(b"other")
+    assert [sample.data for sample in reader.take_all()] == [b"other"]
+
+
+def test_what_living_publishers_keep_is_received_again(domain: MemoryDomain) -> None:
+    reader = domain.subscription(*TOPIC, LATCHED)
+    gone, kept = domain.publisher(*TOPIC, LATCHED), domain.publisher(*TOPIC, LATCHED)
+    gone.write(b"gone")
+    kept.write(b"kept")
+    domain.publisher(*TOPIC, LATCHED)
+    reader.take_all()
+    gone.close()
+    reader.renew()
+    assert [sample.data for sample in reader.take_all()] == [b"kept"]
+
+
+def test_a_volatile_subscription_has_nothing_to_receive_again(domain: MemoryDomain) -> None:
+    reader = domain.subscription(*TOPIC, DEFAULT)
+    domain.publisher(*TOPIC, LATCHED).write(b"x")
+    reader.take_all()
+    reader.renew()
+    assert reader.take_all() == ()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from cyclonedds.core import DDSException, InstanceState, ReadCondition, SampleState, ViewState
@@ -18,6 +19,7 @@ from safety_island.dds.opaque import OpaqueTopic
 from safety_island.dds.qos import Qos, cyclone_qos
 from safety_island.dds.sample import Sample
 from safety_island.dds.types import type_hash_data
+from safety_island.dds.writer_filter import WriterFilter
 
 _UNREAD = ViewState.Any | InstanceState.Any | SampleState.NotRead
 _BATCH = 1024
@@ -88,7 +90,8 @@ class Subscription:
     """Receives serialized messages of one topic.
 
     Counters: ``received`` samples taken, ``superseded`` those dropped for a newer one, ``invalid``
-    notices without data (a writer or an instance went away).
+    notices without data (a writer or an instance went away). ``topic`` is its own: it may be
+    filtered. ``on_change`` is called when its reader is another one, ``on_close`` when it ends.
     """
 
     def __init__(
@@ -99,6 +102,7 @@ class Subscription:
         qos: Qos,
         on_close: Callable[[Subscription], None],
         ignore_own: bool = False,
+        on_change: Callable[[Subscription, ReadCondition], None] | None = None,
     ) -> None:
         self.topic = ros_topic_name(topic.name)
         self.type_name = type_name
@@ -107,13 +111,44 @@ class Subscription:
         self.superseded = 0
         self.invalid = 0
         wanted = cyclone_qos(qos, type_hash_data(type_name), writer=False, ignore_own=ignore_own)
-        self._reader: DataReader[Any] = _create(DataReader, participant, topic, wanted)
-        self._ref: int = self._reader._ref
+        self._filter = WriterFilter(topic._ref)
+        self._topic = topic
+        self._new_reader = partial(_create, DataReader, participant, topic, wanted)
         self._raw = opaque.take if isinstance(topic, OpaqueTopic) else binding.take
+        self._on_close, self._on_change = on_close, on_change
+        self._open()
+
+    def _open(self) -> None:
+        self._reader: DataReader[Any] = self._new_reader()
+        self._ref: int = self._reader._ref
         self._writers: dict[int, bytes] = {}
-        self._on_close = on_close
         self.condition = ReadCondition(self._reader, _UNREAD)
         self.guid: bytes = self._reader.guid.bytes
+
+    @property
+    def kept_out(self) -> int:
+        """Samples of other writers than the one that is kept to."""
+        count: int = self._filter.state.kept_out
+        return count
+
+    def keep_to(self, guid: bytes) -> bool:
+        """Receive from this writer alone, whatever others write; empty: from all.
+
+        False when it is not matched, or has written nothing yet: then from all.
+        """
+        known = [handle for handle, writer in self._writers.items() if writer == guid]
+        alive = [handle for handle in known if binding.matched_writer(self._ref, handle) == guid]
+        self._filter.state.writer = alive[-1] if alive else 0
+        return bool(alive) or not guid
+
+    def renew(self) -> None:
+        """Receive again what living writers keep for late subscriptions, by another reader."""
+        reader, condition = self._reader, self.condition
+        self._open()
+        if self._on_change is not None:
+            self._on_change(self, condition)
+        binding.delete(condition)
+        binding.delete(reader)
 
     def take_newest(self) -> Sample | None:
         """Return the newest sample since the last call and drop the older ones; None when none."""
@@ -141,8 +176,8 @@ class Subscription:
     def close(self) -> None:
         """Leave the topic; the subscription must not be used afterwards."""
         self._on_close(self)
-        binding.delete(self.condition)
-        binding.delete(self._reader)
+        for entity in (self.condition, self._reader, self._topic):
+            binding.delete(entity)
 
     def _take(self) -> list[binding.RawSample]:
         samples: list[binding.RawSample] = []

@@ -6,7 +6,7 @@ from dataclasses import replace
 from types import TracebackType
 from typing import Any
 
-from cyclonedds.core import DDSException, WaitSet
+from cyclonedds.core import DDSException, ReadCondition, WaitSet
 from cyclonedds.domain import DomainParticipant
 from cyclonedds.qos import Policy
 from cyclonedds.qos import Qos as CycloneQos
@@ -94,9 +94,9 @@ class Participant:
         self, topic: str, type_name: str, qos: Qos = DEFAULT, *, ignore_own: bool = False
     ) -> Subscription:
         """Return a new subscription; with ``ignore_own`` it is deaf to this participant."""
-        found = self._topic(dds_topic_name(topic), type_name)
+        own = self._own_topic(dds_topic_name(topic), type_name)
         subscription = Subscription(
-            self._participant, found, type_name, qos, self._forget, ignore_own
+            self._participant, own, type_name, qos, self._forget, ignore_own, self._replace
         )
         self._waitset.attach(subscription.condition)
         self._subscriptions.append(subscription)
@@ -205,16 +205,23 @@ class Participant:
     def _topic(self, dds_topic: str, type_name: str) -> Topic[Any]:
         key = (dds_topic, type_name)
         if key not in self._topics:
-            try:
-                self._topics[key] = self._new_topic(dds_topic, type_name)
-            except DDSException as problem:
-                raise DdsError(f"topic {dds_topic} of {type_name}: {problem}") from None
+            self._topics[key] = self._own_topic(dds_topic, type_name)
         return self._topics[key]
 
-    def _new_topic(self, dds_topic: str, type_name: str) -> Topic[Any]:
-        if registry.known(type_name):
-            return Topic(self._participant, dds_topic, cyclone_type(type_name))
-        return OpaqueTopic(self._participant, dds_topic, type_name)
+    def _own_topic(self, dds_topic: str, type_name: str) -> Topic[Any]:
+        """Return a topic entity that is shared with nothing else, so that it may be filtered."""
+        try:
+            if registry.known(type_name):
+                return Topic(self._participant, dds_topic, cyclone_type(type_name))
+            return OpaqueTopic(self._participant, dds_topic, type_name)
+        except DDSException as problem:
+            raise DdsError(f"topic {dds_topic} of {type_name}: {problem}") from None
+
+    def _replace(self, subscription: Subscription, condition: ReadCondition) -> None:
+        """Wait for the new reader of a subscription in place of its old one."""
+        self._waitset.detach(condition)
+        self._waitset.attach(subscription.condition)
+        self._announce()
 
     def _forget(self, endpoint: Publisher | Subscription) -> None:
         if isinstance(endpoint, Subscription):

@@ -1,4 +1,4 @@
-"""Another clock, or samples from the past? The stamps of a clock go on."""
+"""Tells a sender whose clock was set from samples that arrive late: stamps of a clock advance."""
 
 from __future__ import annotations
 
@@ -21,6 +21,10 @@ class ClockSearch:
         self._limit_s = limit_s
         self._stamp_ns = 0
         self._since = 0.0
+
+    def goes_on(self, now: float) -> bool:
+        """Whether the stamp of ``now`` advanced from one of an earlier tick."""
+        return self._seen_at == now and self._since < now
 
     def finds(self, stamp_ns: int, now: float, fitted_at: float) -> bool:
         """Whether stamps have advanced for long enough, up to this one.

@@ -11,7 +11,7 @@ from safety_island.messages.wire import CDR_LE, HEADER_SIZE
 
 _STAMP = Struct("<iI")
 _SMALLEST = HEADER_SIZE + _STAMP.size
-_NO_STAMP: tuple[float, ...] = (-math.inf,)
+NO_STAMP: tuple[float, ...] = (-math.inf,)
 """Is lower than every stamp (seconds, nanoseconds)."""
 
 TRIES = 3
@@ -38,15 +38,25 @@ def newest_first(samples: Sequence[S]) -> Sequence[S]:
     if len(samples) == 1:
         return samples
     arrival = range(len(samples))
-    order = sorted(arrival, key=lambda i: (_stamp(samples[i].data), i), reverse=True)
+    order = sorted(arrival, key=lambda i: (read_stamp(samples[i].data), i), reverse=True)
     return [samples[i] for i in order[:TRIES]]
+
+
+def in_order(samples: Sequence[S]) -> tuple[Sequence[S], int]:
+    """Return what ``newest_first`` and ``overtaken`` do, in half the time where none was."""
+    if len(samples) == 1:
+        return samples, 0
+    stamps = [read_stamp(sample.data) for sample in samples]
+    if stamps == sorted(stamps):
+        return samples[: -TRIES - 1 : -1], 0
+    return newest_first(samples), overtaken(samples)
 
 
 def overtaken(samples: Sequence[S]) -> int:
     """Count the samples that arrived after one with a higher stamp."""
-    highest, count = _NO_STAMP, 0
+    highest, count = NO_STAMP, 0
     for sample in samples:
-        stamp = _stamp(sample.data)
+        stamp = read_stamp(sample.data)
         if stamp < highest:
             count += 1
         else:
@@ -54,7 +64,8 @@ def overtaken(samples: Sequence[S]) -> int:
     return count
 
 
-def _stamp(data: bytes) -> tuple[float, ...]:
+def read_stamp(data: bytes) -> tuple[float, ...]:
+    """Return seconds and nanoseconds of a message's stamp, NO_STAMP when it has none."""
     if data[:2] != CDR_LE or len(data) < _SMALLEST:
-        return _NO_STAMP
+        return NO_STAMP
     return _STAMP.unpack_from(data, HEADER_SIZE)

@@ -15,7 +15,8 @@ class InputWarning(IntFlag):
     SECOND_PUBLISHER = 16
     PUBLISHER_CHANGED = 32
     CLOCK_STEP = 64
-    YAW_REPLACED = 128
+    CLOCK_RATE = 128
+    YAW_REPLACED = 256
 
 
 EXPLANATIONS: dict[InputWarning, tuple[str, str]] = {
@@ -46,6 +47,11 @@ EXPLANATIONS: dict[InputWarning, tuple[str, str]] = {
     InputWarning.CLOCK_STEP: (
         "its stamps jumped against the island's own clock within the last second",
         "let the clocks of both machines be slewed, not set, while the vehicle drives",
+    ),
+    InputWarning.CLOCK_RATE: (
+        "the stamps of all inputs run slowly or fast, by more than 1 % of the island's own clock",
+        "nothing for a simulation that is slower or faster than real time (`use_sim_time`);"
+        " else look at the sender's clock, and whether the network holds all inputs up",
     ),
     InputWarning.YAW_REPLACED: (
         "orientations of its points contradict the path, and were replaced by its direction",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from safety_island.gate.latched import LatchedGate
 from safety_island.gate.rate import RateMeter
 from safety_island.gate.stamps import StampGate
 from safety_island.gate.warning import InputWarning
@@ -10,12 +11,13 @@ from safety_island.gate.writers import Writers
 _AGE, _RATE, _CLOCK = int(InputWarning.AGE), int(InputWarning.RATE), int(InputWarning.CLOCK)
 _DELAY, _SECOND = int(InputWarning.DELAY), int(InputWarning.SECOND_PUBLISHER)
 _CHANGED, _STEP = int(InputWarning.PUBLISHER_CHANGED), int(InputWarning.CLOCK_STEP)
+_CLOCK_RATE = int(InputWarning.CLOCK_RATE)
 _TURNED = int(InputWarning.YAW_REPLACED)
 
 
 def warnings(
     now: float,
-    stamps: StampGate,
+    stamps: StampGate | LatchedGate,
     writers: Writers,
     rate: RateMeter,
     is_old: bool,
@@ -40,6 +42,8 @@ def warnings(
         bits |= _CHANGED
     if now <= stamps.step_told_until:
         bits |= _STEP
+    if stamps.sender.is_off:
+        bits |= _CLOCK_RATE
     if is_turned:
         bits |= _TURNED
     return bits

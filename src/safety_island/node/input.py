@@ -16,8 +16,7 @@ from typing import Any
 
 from safety_island.dds.sample import Sample
 from safety_island.gate.clock_gap import clock_gap_s
-from safety_island.gate.content import ContentGate
-from safety_island.gate.newest import newest_first, overtaken
+from safety_island.gate.latched import LatchedGate
 from safety_island.gate.params import GateParams
 from safety_island.gate.rate import RateMeter
 from safety_island.gate.reason import UNUSABLE, SampleReason
@@ -48,11 +47,13 @@ class Input:
         follower: InputFollower,
         logger: Logger,
         params: GateParams,
+        stamps: StampGate | LatchedGate,
     ) -> None:
+        """``stamps`` checks the stamps of its samples."""
         self.name = spec.name
         self.topic = spec.topic.name
         self.subscription = subscription
-        self.stamps = StampGate(spec.age_limit_s(params))
+        self.stamps = stamps
         self.writers = Writers(params.writer_changes)
         self.rate = RateMeter(spec.topic.rate_hz)
         self.age_limit_s = spec.age_limit_s(params)
@@ -89,60 +90,99 @@ class Input:
         """Writer of the sample in force."""
         self.message: Any = None
         """The sample in force, decoded."""
-        self._other: Sample | None = None
-        """The newest sample of a publisher that the island does not keep to."""
+        self._kept_to = b""
+        """From whom alone the subscription receives; empty: from all."""
+        self._kept_out = 0
+        """Samples of others that it has kept out, as counted here."""
         self._decode = spec.decoder(follower)
-        self._check = None if spec.check is None else partial(spec.check, ContentGate(params))
         self._offer, self._values = spec.offer(follower), spec.values
         self._count = None if spec.replaced is None else partial(spec.replaced, follower)
         self._logger = logger
 
     def take(self, now: float, since: float) -> int:
         """Take what came after ``since`` [s], the tick before; return how many were refused."""
+        refused = self._count_kept_out() if self.writers.others else 0
         samples = self.subscription.take_all()
         if not samples:
-            return 0
+            return refused
         self._taken_at = now
         if len(samples) == 1 and not self.writers.others:
-            return 0 if self._accept(samples[0], now, since) else 1
-        samples, refused = self._select(samples)
-        for sample in samples:
+            refused += not self._accept(samples[0], now, since)
+        else:
+            samples, foreign = self._without_foreign(samples)
+            refused += foreign + self._take_newest(samples, now, since)
+        self._remember(samples)
+        return refused
+
+    def _take_newest(self, samples: Sequence[Sample], now: float, since: float) -> int:
+        """Accept the newest good one; return how many were refused before it."""
+        self.superseded += max(len(samples) - 1, 0)
+        tried, count = self._in_order(samples)
+        self.overtaken += count
+        refused = 0
+        for sample in tried:
             if self._accept(sample, now, since):
                 break
             refused += 1
         return refused
 
-    def _select(self, samples: Sequence[Sample]) -> tuple[Sequence[Sample], int]:
-        """Return the samples to be looked at, the newest first, and how many others published."""
-        found, foreign = samples, 0
-        if self.writers.others:
-            found, foreign = self._without_foreign(samples)
-        self.superseded += max(len(found) - 1, 0)
-        self.overtaken += overtaken(found)
-        return newest_first(found), foreign
-
     def _without_foreign(self, samples: Sequence[Sample]) -> tuple[Sequence[Sample], int]:
         """Leave out what others published, so that it cannot crowd out the owner's samples."""
-        found = []
-        for sample in samples:
-            if self.writers.takes(sample.writer_guid):
-                found.append(sample)
-            else:
-                self._other = sample
-                self._refuse(SampleReason.OTHER_PUBLISHER)
-        return found, len(samples) - len(found)
+        if not self.writers.others:
+            return samples, 0
+        found = [sample for sample in samples if self._admits(sample.writer_guid)]
+        foreign = len(samples) - len(found)
+        if foreign:
+            self._refuse(SampleReason.OTHER_PUBLISHER, count=foreign)
+        return found, foreign
 
-    def hand_over(self, now: float) -> None:
-        """The publisher that was kept to is gone: take what another one has said meanwhile."""
-        sample, self._other = self._other, None
-        self.stamps.forget()  # the next one may have another clock, or tell the same again
-        lives = sample is not None and sample.writer_guid in self.writers.alive
-        if sample is not None and lives:
-            self._accept(sample, now, now)
+    def _admits(self, guid: bytes) -> bool:
+        """Whether a publisher's samples are taken; from then on it alone is received."""
+        admits = self.writers.takes(guid)
+        if self._kept_to != self.writers.owner:
+            self._kept_to = self.writers.owner
+            self.subscription.keep_to(self._kept_to)
+        return admits
+
+    def _count_kept_out(self) -> int:
+        """Count what others published and the subscription has kept out since the last tick."""
+        count = self.subscription.kept_out - self._kept_out
+        if count:
+            self._kept_out += count
+            self._refuse(SampleReason.OTHER_PUBLISHER, count=count)
+        return count
+
+    def discover(self, alive: frozenset[bytes], now: float) -> None:
+        """Note which publishers live now; when the owner is gone, receive from all again."""
+        self.writers.update(alive, now)
+        owner = self.writers.owner
+        if not self._kept_to or (owner and self.subscription.keep_to(owner)):
+            return
+        self._kept_to = b""
+        self.subscription.keep_to(b"")
+        self._receive_anew(now)
+
+    def _receive_anew(self, now: float) -> None:
+        """What others said before is kept out for good; what comes next is received."""
+
+    def _in_order(self, samples: Sequence[Sample]) -> tuple[Sequence[Sample], int]:
+        """Return the samples of one tick in the order in which they are tried.
+
+        And how many arrived after a newer one.
+        """
+        raise NotImplementedError
+
+    def _remember(self, samples: Sequence[Sample]) -> None:
+        """Note what was received, whatever became of it."""
+
+    def _judge(self, message: Any, sample: Sample, now: float) -> SampleReason | None:
+        """Say why a decoded sample is refused, None when it is good."""
+        raise NotImplementedError
 
     def watch(self, now: float, wall_ns: int) -> None:
         """Look at what changes slowly: how often it comes, and by which clock."""
         self.rate.look(self.subscription.received, now)
+        self.stamps.fade()
         if self.message is not None:
             stamp_ns = self.message.stamp.nanoseconds
             self.clock_gap_s = clock_gap_s(stamp_ns, wall_ns, now - self.accepted_at)
@@ -159,15 +199,11 @@ class Input:
         """
         data, _, guid = sample
         self.taken, self.writer_guid = sample, guid
-        stamps = self.stamps
         try:
             message = self._decode(data)
-            if guid != self.writers.owner and not self.writers.takes(guid):
-                self._other = sample
+            if guid != self.writers.owner and not self._admits(guid):
                 return self._refuse(SampleReason.OTHER_PUBLISHER)
-            reason = stamps.judge(message.stamp, data, now, guid != self.source_guid)
-            if reason is None and self._check is not None:
-                reason = self._check(message, data, stamps)
+            reason = self._judge(message, sample, now)
             if reason is not None:
                 return self._refuse(reason)
             if verdict := self._offer(*self._values(message)):
@@ -178,7 +214,7 @@ class Input:
             raise
         except Exception as error:  # a fault of ours must not let one topic stop the ticks
             return self._refuse(SampleReason.FAULT, describe(error))
-        stamps.hold(data, now)
+        self.stamps.hold(data, now)
         self.source_guid, self.message, self.accepted_at = guid, message, since
         self.accepted += 1
         self.refused_in_a_row = 0
@@ -200,11 +236,11 @@ class Input:
         """Whether its publisher has sent samples within the age limit, but none can be used."""
         return self.refused_in_a_row > 0 and now - self.unusable_at <= self.age_limit_s
 
-    def _refuse(self, reason: SampleReason, detail: str = "") -> bool:
+    def _refuse(self, reason: SampleReason, detail: str = "", count: int = 1) -> bool:
         detail = detail or reason.name.lower().replace("_", " ")
-        self.refused[reason] += 1
+        self.refused[reason] += count
         _COUNT.pack_into(self.refusals, _COUNT.size * reason, self.refused[reason])
-        self.refused_in_a_row += 1
+        self.refused_in_a_row += count
         self.last_refusal = reason
         if reason in UNUSABLE:
             self.unusable_at = self._taken_at

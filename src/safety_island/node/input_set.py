@@ -6,15 +6,15 @@ import math
 from operator import gt
 from typing import NamedTuple
 
-from safety_island.control.status import Mode
 from safety_island.gate.params import GateParams
+from safety_island.gate.sender_clock import SenderClock
 from safety_island.gate.writers import WINDOW_S
 from safety_island.life_cycle.reason import Reason
 from safety_island.messages.inputs import Odometry, OperationMode, Steering
 from safety_island.node.follower import InputFollower
-from safety_island.node.input import Input
+from safety_island.node.input_kinds import make_input
 from safety_island.node.input_warnings import InputWarnings
-from safety_island.node.inputs import INPUTS
+from safety_island.node.inputs import INPUTS, gives_autonomy
 from safety_island.node.transport import Transport
 from safety_island.platform.interfaces import Clock, Logger
 
@@ -24,7 +24,7 @@ STEERING = 2
 OPERATION_MODE = 4
 """Places in the table of inputs."""
 
-_NONE, _AUTONOMOUS = Reason.NONE, int(Mode.AUTONOMOUS)
+_NONE = Reason.NONE
 
 NO_SUBJECT = 255
 """Stands for: the reason is about no input."""
@@ -51,8 +51,9 @@ class InputSet:
         logger: Logger,
         params: GateParams,
     ) -> None:
+        sender = SenderClock()
         self.items = tuple(
-            Input(
+            make_input(
                 spec,
                 transport.subscription(
                     spec.topic.name, spec.topic.type_name, spec.topic.subscription_qos
@@ -60,6 +61,7 @@ class InputSet:
                 follower,
                 logger,
                 params,
+                sender,
             )
             for spec in INPUTS
         )
@@ -67,7 +69,7 @@ class InputSet:
         self._transport = transport
         self._logger = logger
         self._keeps_first = params.second_publisher == "keep_first"
-        self._watch = InputWarnings(self.items, params, clock, logger)
+        self._watch = InputWarnings(self.items, sender, params, clock, logger)
         self.ages_s = [math.inf] * len(self.items)
         """Age of each, as of the last ``measure``."""
         self.disengaged = Reason.WAITING_FOR_INPUT
@@ -85,13 +87,11 @@ class InputSet:
         """Look which publishers live; to be called when some came or went."""
         for item, spec in zip(self.items, INPUTS, strict=True):
             others = item.writers.others
-            item.writers.update(self._transport.writers(item.topic, spec.topic.type_name), now)
+            item.discover(self._transport.writers(item.topic, spec.topic.type_name), now)
             if item.writers.others > others:
                 self._logger.warning("%s has %d publishers", item.topic, item.writers.others + 1)
         self._unsettled_until = now + WINDOW_S
         self._has_others = any(item.writers.others for item in self.items)
-        if not self._mode.writers.owner:
-            self._mode.hand_over(now)  # what is sent on change is not sent again
 
     def take(self, now: float, since: float) -> int:
         """Take what came since the last tick; return how many samples were refused."""
@@ -188,9 +188,7 @@ class InputSet:
             return Reason.WAITING_FOR_INPUT
         if mode.source_guid not in mode.writers.alive:  # another one has said nothing yet
             return Reason.MODE_WRITER_GONE
-        if state.mode == _AUTONOMOUS and state.is_autoware_control_enabled:
-            return _NONE
-        return Reason.NOT_AUTONOMOUS
+        return _NONE if gives_autonomy(state) else Reason.NOT_AUTONOMOUS
 
     def speed(self) -> float:
         """Return the speed [m/s] that was measured last; 0 before the first time."""

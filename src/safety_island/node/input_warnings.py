@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 
 from safety_island.gate.params import GateParams
+from safety_island.gate.sender_clock import SenderClock
 from safety_island.gate.warning import EXPLANATIONS, InputWarning
 from safety_island.gate.warnings import warnings
 from safety_island.node.input import Input
@@ -14,7 +15,7 @@ from safety_island.platform.interfaces import Clock, Logger
 WATCH_EVERY_S = 0.5
 """Time [s] between two looks at what changes slowly: rates, and the senders' clocks."""
 
-_FLEETING = int(~(InputWarning.RATE | InputWarning.CLOCK))
+_FLEETING = int(~(InputWarning.RATE | InputWarning.CLOCK | InputWarning.CLOCK_RATE))
 """Warnings that may end with any tick, and not only with such a look."""
 
 
@@ -26,10 +27,15 @@ class InputWarnings:
     """
 
     def __init__(
-        self, items: Sequence[Input], params: GateParams, clock: Clock, logger: Logger
+        self,
+        items: Sequence[Input],
+        sender: SenderClock,
+        params: GateParams,
+        clock: Clock,
+        logger: Logger,
     ) -> None:
         self.bits = [0] * len(items)
-        self._items, self._clock, self._logger = items, clock, logger
+        self._items, self._sender, self._clock, self._logger = items, sender, clock, logger
         self._oldest_s = [item.age_warning_s for item in items]
         # the last one, the operation mode, was stamped when it changed
         self._widest_gap_s = [params.clock_warning] * (len(items) - 1) + [math.inf]
@@ -61,6 +67,7 @@ class InputWarnings:
         wall_ns = self._clock.wall_ns()
         for item in self._items:
             item.watch(now, wall_ns)
+        self._sender.measure(now)
         self._watch_at = now + WATCH_EVERY_S
         self.wake()
 

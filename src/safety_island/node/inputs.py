@@ -7,7 +7,7 @@ from collections.abc import Callable
 from operator import attrgetter, itemgetter
 from typing import Any, NamedTuple
 
-from safety_island.control.status import Refusal
+from safety_island.control.status import Mode, Refusal
 from safety_island.dds import topics
 from safety_island.dds.topics import TopicEntry
 from safety_island.gate.content import ContentGate
@@ -36,6 +36,8 @@ class InputSpec(NamedTuple):
     age_warning_s: Callable[[GateParams], float] = lambda params: math.inf
     replaced: Callable[[InputFollower], int] | None = None
     """Returns how many values of the sample in force were replaced for contradicting others."""
+    gives: Callable[[Any], bool] | None = None
+    """For what is sent on change: whether a message gives autonomy."""
 
 
 def _plain(decode: Callable[[bytes], Any]) -> Callable[[InputFollower], Callable[[bytes], Any]]:
@@ -55,6 +57,14 @@ def _fields(kind: Any, *names: str) -> Callable[[Any], tuple[Any, ...]]:
     """Return a function that gets these fields of a message: in C, for it runs in every tick."""
     places = [kind._fields.index(name) for name in names]
     return itemgetter(*places) if names[1:] else itemgetter(slice(places[0], places[0] + 1))
+
+
+_AUTONOMOUS = int(Mode.AUTONOMOUS)
+
+
+def gives_autonomy(state: codec.OperationMode) -> bool:
+    """Whether the vehicle is under Autoware's control in this state."""
+    return state.mode == _AUTONOMOUS and state.is_autoware_control_enabled
 
 
 _ODOMETRY = ("x", "y", "z", "qx", "qy", "qz", "qw", "vx", "vy", "wz")
@@ -108,6 +118,7 @@ INPUTS = (
         None,
         attrgetter("offer_operation_mode"),
         _fields(codec.OperationMode, *_MODE),
+        gives=gives_autonomy,
     ),
 )
 """The five inputs, in the order in which a tick takes them."""

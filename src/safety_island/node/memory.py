@@ -17,16 +17,36 @@ from safety_island.platform.interfaces import Clock
 class MemorySubscription:
     """Holds the newest messages until they are taken."""
 
-    def __init__(self) -> None:
+    def __init__(self, latched: Sequence[MemoryPublisher] = ()) -> None:
+        """``latched``: publishers that keep their last message for this subscription."""
         self.received = 0
         self.superseded = 0
         self.invalid = 0
+        self.kept_out = 0
+        """Messages of other publishers than the one that is kept to."""
+        self._keeps_to = b""
+        self._latched = latched
         self._waiting: deque[Sample] = deque(maxlen=INPUT_DEPTH)
+        self.renew()
 
     def put(self, sample: Sample) -> None:
         """Receive a message."""
+        if self._keeps_to and sample.writer_guid != self._keeps_to:
+            self.kept_out += 1
+            return
         self.received += 1
         self._waiting.append(sample)
+
+    def keep_to(self, guid: bytes) -> bool:
+        """Receive from this publisher alone; empty: from all."""
+        self._keeps_to = guid
+        return True
+
+    def renew(self) -> None:
+        """Receive again what living publishers keep for late subscriptions."""
+        for writer in self._latched:
+            if writer.last is not None:
+                self.put(writer.last)
 
     def take_newest(self) -> Sample | None:
         """Return the newest message since the last call, None when there is none; drop others."""
@@ -126,11 +146,8 @@ class MemoryDomain:
     def subscription(self, topic: str, type_name: str, qos: Qos) -> MemorySubscription:
         """Make a subscription; a transient-local one starts with what was last said."""
         found = self._topic(topic, type_name)
-        reader = MemorySubscription()
+        reader = MemorySubscription(found.latched if qos.durability == "transient_local" else ())
         found.readers.append(reader)
-        if qos.durability == "transient_local":
-            for sample in [writer.last for writer in found.latched if writer.last is not None]:
-                reader.put(sample)
         return reader
 
     def endpoint_changes(self) -> int:

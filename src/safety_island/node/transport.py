@@ -33,6 +33,19 @@ class Subscription(Protocol):
     superseded: int
     invalid: int
 
+    @property
+    def kept_out(self) -> int:
+        """Messages of other publishers than the one that is kept to."""
+
+    def keep_to(self, guid: bytes) -> bool:
+        """Receive from this publisher alone, whatever others publish; empty: from all.
+
+        False when it is not known (it has published nothing yet): then from all.
+        """
+
+    def renew(self) -> None:
+        """Receive again what living publishers keep for late subscriptions."""
+
     def take_newest(self) -> Sample | None:
         """Return the newest message since the last call, None when there is none; drop others."""
 
