@@ -61,5 +61,5 @@ def test_each_cause_has_its_bit(bits: InputWarning, found: int) -> None:
 
 def test_every_warning_is_explained() -> None:
     assert list(EXPLANATIONS) == list(InputWarning)
-    assert [int(bit) for bit in InputWarning] == [1, 2, 4, 8, 16, 32, 64, 128]
+    assert [int(bit) for bit in InputWarning] == [1 << place for place in range(9)]
     assert all(meaning and action for meaning, action in EXPLANATIONS.values())
