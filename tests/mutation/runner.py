@@ -53,7 +53,7 @@ class Room:
         found = [sorted(path.glob("*.py")) if path.is_dir() else [path] for path in paths]
         return [file for files in found for file in files]
 
-    def test_paths(self) -> list[str]:
+    def paths_of_tests(self) -> list[str]:
         """Return the test files; recorded runs are left out, they take seconds."""
         return [
             str(file)
@@ -111,7 +111,7 @@ def warm_up() -> None:
     settings.load_profile("mutate")
     os.environ["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"
     with contextlib.redirect_stdout(io.StringIO()):
-        pytest.main([*OPTIONS, "--collect-only", *ROOMS[-1].test_paths()])
+        pytest.main([*OPTIONS, "--collect-only", *ROOMS[-1].paths_of_tests()])
     gc.collect()
     gc.freeze()  # pytest collects garbage at its end, which is not to walk all that is here
 
@@ -139,7 +139,7 @@ def start(room: Room, mutant: Mutant | None, limit_s: int) -> int:
 
 def _likeliest_first(room: Room, mutant: Mutant | None) -> list[str]:
     """Units and ranges of parameters are held by their page, which is the last of the tests."""
-    paths = room.test_paths()
+    paths = room.paths_of_tests()
     return paths[::-1] if mutant and mutant.file.endswith("params.py") else paths
 
 

@@ -62,8 +62,8 @@ def test_what_does_not_run_is_left_alone(source: str) -> None:
 
 def test_every_room_has_sources_and_tests() -> None:
     for room in ROOMS:
-        assert room.files() and room.test_paths()
-        assert not any("golden" in path for path in room.test_paths())
+        assert room.files() and room.paths_of_tests()
+        assert not any("golden" in path for path in room.paths_of_tests())
 
 
 def test_every_reason_belongs_to_a_line_that_stands() -> None:
