@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import io
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,8 @@ from safety_island.can.candump import LogEntry, parse_line
 from safety_island.errors import IslandError
 
 STANDARD_INPUT = "-"
+LONGEST_LINE = 1 << 16
+"""Characters of a line; a device or another kind of file may have no end of a line at all."""
 _READERS = {".asc": "ASCReader", ".blf": "BLFReader", ".csv": "CSVReader", ".trc": "TRCReader"}
 _BINARY = (".blf",)
 
@@ -34,7 +37,9 @@ def read_log(name: str) -> Iterator[LogEntry]:
 
 def _entries(name: str) -> Iterator[LogEntry]:
     if name == STANDARD_INPUT:
-        yield from _candump("standard input", sys.stdin)
+        if isinstance(sys.stdin, io.TextIOWrapper):
+            sys.stdin.reconfigure(errors="replace")
+        yield from _candump(_CountedLines("standard input", sys.stdin))
         return
     suffix = Path(name).suffix.lower()
     try:
@@ -43,22 +48,23 @@ def _entries(name: str) -> Iterator[LogEntry]:
                 yield from _python_can(name, _READERS[suffix], data)
         else:
             with Path(name).open(encoding="utf-8", errors="replace") as lines:
+                counted = _CountedLines(name, lines)
                 if suffix in _READERS:
-                    yield from _python_can(name, _READERS[suffix], _CountedLines(lines))
+                    yield from _python_can(name, _READERS[suffix], counted)
                 else:
-                    yield from _candump(name, lines)
+                    yield from _candump(counted)
     except OSError as error:
         raise LogError(f"{name}: cannot be read: {error.strerror}") from error
 
 
-def _candump(name: str, lines: Iterable[str]) -> Iterator[LogEntry]:
-    for number, line in enumerate(lines, 1):
+def _candump(lines: _CountedLines) -> Iterator[LogEntry]:
+    for line in lines:
         if not line.strip():
             continue
         entry = parse_line(line)
         if entry is None:
             raise LogError(
-                f"{name}:{number}: found {_shortened(line)}, expected a line of 'candump -L' "
+                f"{lines.place}: found {_shortened(line)}, expected a line of 'candump -L' "
                 "like '(1700000000.123456) can0 100#48E80100E05EF8FF'"
             )
         yield entry
@@ -70,18 +76,27 @@ def _shortened(line: str) -> str:
 
 
 class _CountedLines:
-    """A text file that knows which line was read last."""
+    """A text file that knows which line was read last, and refuses one without an end."""
 
-    def __init__(self, lines: Any) -> None:
-        self._lines = lines
-        self.number = 0
+    def __init__(self, name: str, lines: Any) -> None:
+        self._name, self._lines = name, lines
+        self._number = 0
+
+    @property
+    def place(self) -> str:
+        """Where the line stands that was read last."""
+        return f"{self._name}:{self._number}"
 
     def __iter__(self) -> Iterator[str]:
         return self
 
     def __next__(self) -> str:
-        line: str = next(self._lines)
-        self.number += 1
+        line: str = self._lines.readline(LONGEST_LINE)
+        if not line:
+            raise StopIteration
+        self._number += 1
+        if len(line) == LONGEST_LINE:
+            raise LogError(f"{self.place}: a line without an end, expected a CAN log")
         return line
 
     def __getattr__(self, name: str) -> Any:
@@ -96,6 +111,8 @@ def _python_can(name: str, reader: str, file: Any) -> Iterator[LogEntry]:
     try:
         for message in getattr(can, reader)(file):
             yield entry_of(message)
+    except LogError:
+        raise
     except Exception as error:  # each reader has exceptions of its own for what it cannot parse
-        place = f"{name}:{file.number}" if isinstance(file, _CountedLines) else name
+        place = file.place if isinstance(file, _CountedLines) else name
         raise LogError(f"{place}: cannot be read as {reader[:3]} log: {error}") from error
