@@ -10,6 +10,7 @@ from typing import NoReturn, TypeVar
 import yaml
 
 from safety_island.errors import ConfigurationError
+from safety_island.text_file import UnreadableError, read_text
 
 _TAGS = {
     "str": "tag:yaml.org,2002:str",
@@ -84,7 +85,9 @@ class Section:
         expected = f"{meaning}: a whole number from {low} to {high}"
         value = self._scalar(key, "int", expected, int)
         if value is not None and not low <= value <= high:
-            self.place(key).refuse(f"{key} is {value}, expected {expected}")
+            node = self.node(key)  # as it is written: 5000 digits cannot be
+            assert node is not None
+            self.place(key).refuse(f"{key} is {node.value}, expected {expected}")
         return value
 
     def choice(self, key: str, choices: tuple[str, ...]) -> str | None:
@@ -103,7 +106,10 @@ class Section:
             return None
         if not isinstance(node, yaml.ScalarNode) or node.tag != _TAGS[tag]:
             self.place(key).refuse(f"{key} is {describe(node)}, expected {expected}")
-        value = yaml.SafeLoader("").construct_object(node)
+        try:
+            value = yaml.SafeLoader("").construct_object(node)
+        except (ValueError, LookupError):  # of its own words for numbers: 0b_, 5000 digits
+            self.place(key).refuse(f"{key} is {describe(node)}, expected {expected}")
         assert isinstance(value, kind)
         return value
 
@@ -111,12 +117,11 @@ class Section:
 def load(path: str) -> yaml.Node:
     """Return the one document of a file. Raises ConfigurationError when it is no YAML."""
     try:
-        node = yaml.compose(Path(path).read_text(encoding="utf-8"), Loader=yaml.SafeLoader)
-    except OSError as problem:
-        reason = problem.strerror or str(problem)
-        raise ConfigurationError(f"cannot read bridge file {path}: {reason}") from None
-    except UnicodeDecodeError:
-        raise ConfigurationError(f"{path}: not UTF-8 text, expected a YAML file") from None
+        node = yaml.compose(read_text(Path(path)), Loader=yaml.SafeLoader)
+    except UnreadableError as why:
+        raise ConfigurationError(f"cannot read bridge file {path}: {why}") from None
+    except RecursionError:
+        raise ConfigurationError(f"{path}: lists or maps too deep, expected five levels") from None
     except yaml.YAMLError as problem:
         raise ConfigurationError(f"{path}:{_line(problem)}: not YAML: {_reason(problem)}") from None
     if node is None:
