@@ -87,10 +87,12 @@ def _tested(room: Room, found: list[Mutant], jobs: int) -> Result | None:
     excuses = read_excuses()
     print(f"{room.name}: {len(found)} mutants; its tests take {seconds:.1f} s", flush=True)
 
-    def told(done: int, survivor: Mutant) -> None:
-        why = excuse_of(survivor, excuses)
-        word = f"equivalent ({why})" if why else "SURVIVED"
-        print(f"  [{done}] {survivor.place}: {word}", flush=True)
+    def told(done: int, survivor: Mutant | None) -> None:
+        if survivor is not None:
+            why = excuse_of(survivor, excuses)
+            print(f"  {survivor.place}: {f'equivalent ({why})' if why else 'SURVIVED'}", flush=True)
+        if done % 50 == 0 or done == len(found):
+            print(f"  {done} of {len(found)}", flush=True)
 
     survivors = run(room, found, jobs, int(5 * seconds) + 5, told)
     return Result(room.name, len(found), survivors, excuses)

@@ -129,10 +129,15 @@ def _boolean(node: ast.BoolOp) -> Iterator[Change]:
         fewer = rest[0] if len(rest) == 1 else ast.BoolOp(node.op, rest)
         yield f"`{one_line(node)}` without `{one_line(operand)}`", fewer
     for i, (one, following) in enumerate(pairwise(node.values)):
-        if any(isinstance(part, ast.Call) for part in (*ast.walk(one), *ast.walk(following))):
+        if any(_acts(part) for part in (*ast.walk(one), *ast.walk(following))):
             swapped = [*node.values[:i], following, one, *node.values[i + 2 :]]
             change = f"`{one_line(following)}` before `{one_line(one)}`"
             yield change, ast.BoolOp(node.op, swapped)
+
+
+def _acts(node: ast.AST) -> bool:
+    """Whether a node may do something: it calls a method; a function like ``abs`` only answers."""
+    return isinstance(node, ast.Call) and not _gives_what_it_gets(node.func)
 
 
 def _constant(node: ast.Constant) -> Iterator[Change]:

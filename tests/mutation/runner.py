@@ -191,11 +191,11 @@ def run(
     found: Sequence[Mutant],
     jobs: int,
     limit_s: int,
-    told: Callable[[int, Mutant], None],
+    told: Callable[[int, Mutant | None], None],
 ) -> list[Mutant]:
     """Test every mutant; return those that no test noticed.
 
-    ``told`` is called with how many are done and with the mutant, for each that survives.
+    ``told`` is called after each, with how many are done, and with the mutant when it survives.
     """
     waiting, running, survivors = list(reversed(found)), dict[int, Mutant](), list[Mutant]()
     while waiting or running:
@@ -206,7 +206,7 @@ def run(
         mutant = running.pop(pid)
         if status == 0:
             survivors.append(mutant)
-            told(len(found) - len(waiting) - len(running), mutant)
+        told(len(found) - len(waiting) - len(running), None if status else mutant)
     return sorted(survivors, key=lambda mutant: (mutant.file, mutant.line))
 
 
