@@ -116,5 +116,7 @@ def update(results: Sequence[Result]) -> Path:
     }
     sections.update({result.room: result.section() for result in results})
     ordered = [sections[room.name].rstrip() for room in ROOMS if room.name in sections]
+    if missing := [room.name for room in ROOMS if room.name not in sections]:
+        ordered.append(f"Not measured yet: {', '.join(missing)}.")
     PAGE.write_text("\n\n".join([INTRODUCTION.rstrip(), *ordered]) + "\n", "utf-8")
     return PAGE.relative_to(ROOT)
