@@ -89,7 +89,8 @@ def _check_user_xml(part: str) -> None:
         try:
             text = read_text(Path(where))
         except UnreadableError as why:
-            raise ConfigurationError(f"{URI}: cannot read {where!r}: {why}") from None
+            shown = where if where.isprintable() else repr(where)
+            raise ConfigurationError(f"{URI}: cannot read {shown}: {why}") from None
     try:
         root = ElementTree.fromstring(text)
     except ElementTree.ParseError as problem:
