@@ -254,7 +254,7 @@ def test_file_that_is_not_text_is_refused(places: Places) -> None:
     path = places.config.parent / "bad.conf"
     path.write_bytes(b"CONFIG_LOG_LEVEL=\xff\n")
     assert mistakes(places, path) == [
-        "bad.conf: cannot read this configuration: it is not UTF-8 text"
+        "bad.conf: cannot read this configuration: it is not UTF-8 text (at byte 17)"
     ]
     (told,) = mistakes(places, places.config)
     assert told == "config: cannot read this configuration: Is a directory"

@@ -230,3 +230,14 @@ def test_a_value_beyond_single_precision_stays_out_of_range() -> None:
 def test_numpy_scalars_are_scaled_in_double_precision() -> None:
     value = np.float32(0.123456)
     assert raw_of("steering_tire_angle", value) == raw_of("steering_tire_angle", float(value))
+
+
+def test_a_value_of_single_precision_is_scaled_in_double() -> None:
+    value = np.float32(123.456)  # 123.456001...; as a product in single precision 123456000
+    assert quantise(value, SIGNALS["steering_tire_angle"]) == 123456001  # type: ignore[arg-type]
+
+
+def test_the_frames_are_a_tuple_of_plain_bytes_whatever_the_numbers_are_made_of() -> None:
+    plain = Command(is_defined_acceleration=True, acceleration=1.5)
+    frames = frames_of(changed(plain, "is_defined_acceleration", np.True_))
+    assert frames == frames_of(plain) and type(frames) is tuple

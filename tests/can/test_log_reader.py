@@ -357,3 +357,17 @@ def test_a_blf_log_with_damaged_bytes_does_no_harm(tmp_path: Path) -> None:
         except LogError as error:
             assert str(error).isascii()
         assert all(text.isascii() and text.isprintable() for text in notes.sentences())
+
+
+def test_standard_input_that_is_no_text(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(b"\xff\xfe\n"), "utf-8"))
+    with pytest.raises(LogError, match=r"^standard input:1: found '.*', expected a line of"):
+        list(read_log("-"))
+
+
+@pytest.mark.parametrize("suffix", [".log", ".asc", ".csv", ".trc"])
+def test_a_line_without_an_end_is_not_read_to_its_end(tmp_path: Path, suffix: str) -> None:
+    path = tmp_path / f"drive{suffix}"
+    path.symlink_to("/dev/zero")
+    with pytest.raises(LogError, match=rf"^{path}:1: a line without an end, expected a CAN log$"):
+        list(read_log(str(path)))

@@ -146,3 +146,24 @@ def test_module_runs_as_the_command() -> None:
 
 def test_table_loads() -> None:
     assert all(hasattr(load(row), "execute") for row in COMMANDS)
+
+
+def test_words_of_others_do_not_reach_the_terminal_as_they_are(
+    command: SimpleNamespace, capsys: Capture
+) -> None:
+    """A file may hold what clears a screen, or a line of a megabyte."""
+    command.execute = raises(IslandError(f"found '\x1b[2J\x07\u202e' {'a' * 10**6} in a file"))
+    assert main(["demo"]) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith(r"island: error: found '\x1b[2J\x07\u202e' aaa")
+    assert line.endswith("aaa in a file") and " [...] " in line and len(line) < 1100
+
+
+def test_mistakes_without_number_are_told_in_part(
+    command: SimpleNamespace, capsys: Capture
+) -> None:
+    command.execute = raises(IslandError("\n".join(f"line {n}" for n in range(10**5))))
+    assert main(["demo"]) == 1
+    lines = capsys.readouterr().err.splitlines()
+    assert len(lines) == 201
+    assert lines[199:] == ["island: error: line 199", "island: error: and 99800 more of this kind"]

@@ -177,3 +177,13 @@ def test_after_one_that_passed_at_once_limits_count_from_it() -> None:
     guard.check(Proposal(10.0, 10.0, 1, 0.05, 0.0, 0.0, 0.0), 1.0, 0.05)
     guard.check(Proposal(10.1, 10.1, 2, 0.0625, 0.0, 0.0, 0.125), 1.0, 0.05)
     assert guard._sent == (10.1, 0.0625, tan(0.0625), 0.125)
+
+
+def test_speed_and_steering_as_measured_are_not_mixed_up() -> None:
+    """At 0.2 m/s with the wheel at -0.3 rad: either for the other lets 0.2 rad pass at once."""
+    guard = Guard(LIMITS, WHEEL_BASE, TIMEOUT)
+    assert (
+        guard.check(Proposal(10.0, 10.0, 1, 0.2, 0.0, 0.0, 0.0), 0.2, 0.2).verdict is Verdict.PASSED
+    )
+    found = guard.check(Proposal(10.1, 10.1, 2, 0.2, 0.0, 0.0, 0.0), 0.2, -0.3)
+    assert found.verdict is Verdict.CLAMPED

@@ -5,62 +5,66 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 from copy import deepcopy
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
-_COMPARE: dict[type[ast.cmpop], tuple[type[ast.cmpop], ...]] = {
-    ast.Lt: (ast.LtE, ast.GtE),
-    ast.LtE: (ast.Lt, ast.Gt),
-    ast.Gt: (ast.GtE, ast.LtE),
-    ast.GtE: (ast.Gt, ast.Lt),
-    ast.Eq: (ast.NotEq,),
-    ast.NotEq: (ast.Eq,),
-    ast.Is: (ast.IsNot,),
-    ast.IsNot: (ast.Is,),
-    ast.In: (ast.NotIn,),
-    ast.NotIn: (ast.In,),
-}
-_BINARY: dict[type[ast.operator], type[ast.operator]] = {
-    ast.Add: ast.Sub,
-    ast.Sub: ast.Add,
-    ast.Mult: ast.Div,
-    ast.Div: ast.Mult,
-    ast.FloorDiv: ast.Mult,
-    ast.Mod: ast.Mult,
-    ast.Pow: ast.Mult,
-    ast.LShift: ast.RShift,
-    ast.RShift: ast.LShift,
-    ast.BitOr: ast.BitAnd,
-    ast.BitAnd: ast.BitOr,
-}
-_CALLS = {"min": "max", "max": "min", "any": "all", "all": "any"}
-_DELETED = (ast.Expr, ast.Assign, ast.AugAssign, ast.Raise, ast.Continue, ast.Break)
+from tests.mutation.changes import changes_of
 
 
 @dataclass(frozen=True)
 class Mutant:
-    """A source with one change, as a tree; ``source`` is the line that the change is in."""
+    """A source with one change; ``source`` is the line that the change is in."""
 
     file: str
     line: int
     source: str
     change: str
-    tree: ast.AST
+    original: ast.AST = field(repr=False)
+    index: int
+    """Which node of the original is changed."""
+    replacement: ast.AST = field(repr=False)
+
+    @property
+    def tree(self) -> ast.AST:
+        """The changed source; made when asked for, since there are thousands."""
+        copy = deepcopy(self.original)
+        victim = list(_nodes(copy))[self.index]
+        mutated: ast.AST = _Replace(victim, deepcopy(self.replacement)).visit(copy)
+        return ast.fix_missing_locations(mutated)
+
+    @property
+    def place(self) -> str:
+        """Where it is and what it does."""
+        return f"{self.file}:{self.line}: {self.change}"
 
 
 def mutants(file: str, text: str) -> Iterator[Mutant]:
     """Yield every mutant of a source text, in the order of its lines."""
     tree, lines = ast.parse(text), text.splitlines()
+    returns, last = _functions(tree)
     found: list[Mutant] = []
     for index, node in enumerate(_nodes(tree)):
-        for change, replacement in _replacements(node):
-            if ast.dump(replacement) == ast.dump(node):
-                continue
-            copy = deepcopy(tree)
-            victim = list(_nodes(copy))[index]
-            mutated = ast.fix_missing_locations(_Replace(victim, replacement).visit(copy))
-            line = getattr(node, "lineno", 1)
-            found.append(Mutant(file, line, lines[line - 1].strip(), change, mutated))
+        line = getattr(node, "lineno", 0) or _line_within(node)
+        seen = {ast.dump(node)}
+        for change, new in changes_of(node, returns.get(id(node), ""), id(node) in last):
+            if ast.dump(new) not in seen:
+                seen.add(ast.dump(new))
+                found.append(Mutant(file, line, lines[line - 1].strip(), change, tree, index, new))
     yield from sorted(found, key=lambda mutant: mutant.line)
+
+
+def _line_within(node: ast.AST) -> int:
+    return next((n.lineno for n in ast.walk(node) if hasattr(n, "lineno")), 1)
+
+
+def _functions(tree: ast.AST) -> tuple[dict[int, str], set[int]]:
+    """Of each return, by its id, what type its function says; and which of them are the last."""
+    returns, last = dict[int, str](), set[int]()
+    for function in ast.walk(tree):
+        if isinstance(function, ast.FunctionDef | ast.AsyncFunctionDef):
+            kind = ast.unparse(function.returns) if function.returns else ""
+            returns |= {id(n): kind for n in ast.walk(function) if isinstance(n, ast.Return)}
+            last.add(id(function.body[-1]))
+    return returns, last
 
 
 class _Replace(ast.NodeTransformer):
@@ -88,60 +92,13 @@ def _nodes(node: ast.AST) -> Iterator[ast.AST]:
 def _is_declaration(node: ast.AST) -> bool:
     if isinstance(node, ast.Expr):
         return isinstance(node.value, ast.Constant)
-    if isinstance(node, ast.Assign):  # Name = tuple[...], __all__ = [...]
+    if isinstance(node, ast.Assign):  # Name = tuple[...], T = TypeVar(...), __all__ = [...]
         value = node.value
         is_alias = isinstance(value, ast.Subscript) and isinstance(value.value, ast.Name)
+        is_variable = isinstance(value, ast.Call) and ast.unparse(value.func) == "TypeVar"
         names = [target.id for target in node.targets if isinstance(target, ast.Name)]
-        return "__all__" in names or (is_alias and ast.unparse(value).startswith("tuple["))
+        is_alias = is_alias and ast.unparse(value).startswith(("tuple[", "Callable["))
+        return "__all__" in names or is_variable or is_alias
+    if isinstance(node, ast.If):
+        return ast.unparse(node.test) == "TYPE_CHECKING"
     return isinstance(node, (ast.Import, ast.ImportFrom))
-
-
-def _replacements(node: ast.AST) -> Iterator[tuple[str, ast.AST]]:
-    if isinstance(node, ast.Compare):
-        yield from _compare(node)
-    elif isinstance(node, ast.BinOp) and type(node.op) in _BINARY:
-        new = _BINARY[type(node.op)]()
-        yield _told(node, ast.BinOp(node.left, new, node.right))
-    elif isinstance(node, ast.AugAssign) and type(node.op) in _BINARY:
-        yield _told(node, ast.AugAssign(node.target, _BINARY[type(node.op)](), node.value))
-    elif isinstance(node, ast.BoolOp):
-        other = ast.Or() if isinstance(node.op, ast.And) else ast.And()
-        yield _told(node, ast.BoolOp(other, node.values))
-    elif isinstance(node, ast.UnaryOp) and isinstance(node.op, (ast.Not, ast.USub)):
-        yield _told(node, node.operand)
-    elif isinstance(node, ast.Constant) and isinstance(node.value, (bool, int, float)):
-        is_switch = isinstance(node.value, bool)
-        yield _told(node, ast.Constant(not node.value if is_switch else node.value + 1))
-    elif isinstance(node, ast.Return) and node.value is not None:
-        yield _told(node, ast.Return(ast.Constant(None)))
-    elif isinstance(node, ast.IfExp):
-        yield _told(node, ast.IfExp(node.test, node.orelse, node.body))
-    elif isinstance(node, ast.If):
-        yield _condition(node)
-    elif isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in _CALLS:
-        function = ast.Name(_CALLS[node.func.id], ast.Load())
-        yield _told(node, ast.Call(function, node.args, node.keywords))
-    if isinstance(node, _DELETED):
-        yield f"delete `{_one_line(node)}`", ast.Pass()
-
-
-def _compare(node: ast.Compare) -> Iterator[tuple[str, ast.AST]]:
-    for i, op in enumerate(node.ops):
-        for other in _COMPARE[type(op)]:
-            ops = [*node.ops[:i], other(), *node.ops[i + 1 :]]
-            yield _told(node, ast.Compare(node.left, ops, node.comparators))
-
-
-def _condition(node: ast.If) -> tuple[str, ast.AST]:
-    test = ast.UnaryOp(ast.Not(), node.test)
-    change = f"`if {ast.unparse(node.test)}` -> `if {ast.unparse(test)}`"
-    return change, ast.If(test, node.body, node.orelse)
-
-
-def _told(old: ast.AST, new: ast.AST) -> tuple[str, ast.AST]:
-    return f"`{_one_line(old)}` -> `{_one_line(new)}`", new
-
-
-def _one_line(node: ast.AST) -> str:
-    text = " ".join(ast.unparse(ast.fix_missing_locations(node)).split())
-    return text if len(text) <= 70 else text[:67] + "..."

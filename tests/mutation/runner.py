@@ -8,9 +8,9 @@ import importlib
 import importlib.util
 import io
 import os
+import resource
 import signal
 import sys
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib.machinery import ModuleSpec, SourceFileLoader
@@ -26,10 +26,19 @@ from tests.mutation.mutants import Mutant
 ROOT = Path(__file__).parents[2]
 SOURCE = ROOT / "src"
 
+_MEMORY = 8 << 30
+"""Bytes of address space; a mutant that takes memory without end does not take the machine's."""
+
+_PATIENCE = 20
+"""Seconds of waiting that a mutant has for each second of processor time."""
+
 WARM = ("safety_island.control.follower", "safety_island.params", "tests.conftest")
 """Slow to import; what they import of the rooms below is forgotten again."""
 
-ABOVE = ("gate", "life_cycle", "guard", "can", "params", "node", "sim", "replay", "cli", "bench")
+ABOVE = (
+    *("gate", "life_cycle", "guard", "can", "params", "bridge", "node"),
+    *("sim", "replay", "cli", "bench"),
+)
 """Rooms that are mutated or import one that is; a fork imports them anew."""
 
 OPTIONS = (
@@ -53,15 +62,18 @@ class Room:
         found = [sorted(path.glob("*.py")) if path.is_dir() else [path] for path in paths]
         return [file for files in found for file in files]
 
-    def test_paths(self) -> list[str]:
-        """Return the test files; recorded runs are left out, they take seconds."""
+    def paths_of_tests(self) -> list[str]:
+        """Return the test files but those that take seconds each: recorded runs, live drives."""
         return [
             str(file)
             for path in (ROOT / name for name in self.tests)
             for file in (sorted(path.rglob("test_*.py")) if path.is_dir() else [path])
-            if file.name != "test_golden.py"
+            if file.name not in SLOW
         ]
 
+
+SLOW = ("test_golden.py", "test_live.py", "test_acceptance.py")
+"""Files of tests that take seconds each; what they alone hold is not held by a room's own tests."""
 
 PAGE = "tests/params/test_document.py"
 """The page of the parameters, which holds the units and ranges of a room's own."""
@@ -71,7 +83,10 @@ ROOMS = (
     Room("life_cycle", ("life_cycle",), ("tests/life_cycle", PAGE)),
     Room("guard", ("guard",), ("tests/guard", PAGE)),
     Room("can/encoder.py", ("can/encoder.py",), ("tests/can/test_encoder.py",)),
+    Room("node", ("node",), ("tests/node",)),
+    Room("bridge", ("bridge",), ("tests/bridge",)),
 )
+"""The safety code, then what decides around it; a room's tests may use DDS on loopback."""
 
 
 class _Mutated(SourceFileLoader):
@@ -111,7 +126,7 @@ def warm_up() -> None:
     settings.load_profile("mutate")
     os.environ["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"
     with contextlib.redirect_stdout(io.StringIO()):
-        pytest.main([*OPTIONS, "--collect-only", *ROOMS[-1].test_paths()])
+        pytest.main([*OPTIONS, "--collect-only", *ROOMS[-1].paths_of_tests()])
     gc.collect()
     gc.freeze()  # pytest collects garbage at its end, which is not to walk all that is here
 
@@ -119,12 +134,15 @@ def warm_up() -> None:
 def start(room: Room, mutant: Mutant | None, limit_s: int) -> int:
     """Fork a process that tests a mutant (None: the source as it is); return its id.
 
-    It ends with 0 when every test passes, by SIGALRM when they take too long.
+    It ends with 0 when every test passes, by SIGXCPU when they take too much processor time and by
+    SIGALRM when they wait for what does not come: a machine that is busy kills no mutant.
     """
     pid = os.fork()
     if pid:
         return pid
-    signal.alarm(limit_s)
+    resource.setrlimit(resource.RLIMIT_CPU, (limit_s, limit_s))
+    resource.setrlimit(resource.RLIMIT_AS, (_MEMORY, _MEMORY))
+    signal.alarm(_PATIENCE * limit_s)
     status = 1
     try:
         _silence()
@@ -138,9 +156,12 @@ def start(room: Room, mutant: Mutant | None, limit_s: int) -> int:
 
 
 def _likeliest_first(room: Room, mutant: Mutant | None) -> list[str]:
-    """Units and ranges of parameters are held by their page, which is the last of the tests."""
-    paths = room.test_paths()
-    return paths[::-1] if mutant and mutant.file.endswith("params.py") else paths
+    """The tests named after the file come first; of parameters, their page."""
+    paths = room.paths_of_tests()
+    if mutant is None:
+        return paths
+    stem = "document" if mutant.file.endswith("params.py") else Path(mutant.file).stem
+    return sorted(paths, key=lambda path: not Path(path).stem.startswith(f"test_{stem}"))
 
 
 def _first_failure(paths: Sequence[str]) -> int:
@@ -166,9 +187,16 @@ def _forget_rooms() -> None:
 
 
 def run(
-    room: Room, found: Sequence[Mutant], jobs: int, limit_s: int, told: Callable[[int, int], None]
+    room: Room,
+    found: Sequence[Mutant],
+    jobs: int,
+    limit_s: int,
+    told: Callable[[int, Mutant | None], None],
 ) -> list[Mutant]:
-    """Test every mutant; return those that no test noticed. ``told``: of (done, survivors)."""
+    """Test every mutant; return those that no test noticed.
+
+    ``told`` is called after each, with how many are done, and with the mutant when it survives.
+    """
     waiting, running, survivors = list(reversed(found)), dict[int, Mutant](), list[Mutant]()
     while waiting or running:
         while waiting and len(running) < jobs:
@@ -178,12 +206,11 @@ def run(
         mutant = running.pop(pid)
         if status == 0:
             survivors.append(mutant)
-        told(len(found) - len(waiting) - len(running), len(survivors))
+        told(len(found) - len(waiting) - len(running), None if status else mutant)
     return sorted(survivors, key=lambda mutant: (mutant.file, mutant.line))
 
 
 def baseline(room: Room) -> float | None:
-    """Return how long the tests of a room take [s] when nothing is changed; None: they fail."""
-    begin = time.monotonic()
-    _, status = os.waitpid(start(room, None, 600), 0)
-    return time.monotonic() - begin if status == 0 else None
+    """Return the processor time of a room's tests [s] when nothing is changed; None: they fail."""
+    _, status, usage = os.wait4(start(room, None, 600), 0)
+    return usage.ru_utime + usage.ru_stime if status == 0 else None

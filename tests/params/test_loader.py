@@ -83,7 +83,7 @@ def test_files_that_cannot_be_read(tmp_path: Path) -> None:
     (tmp_path / "huge").write_bytes(b"#" * (MAX_FILE_BYTES + 1))
     (tmp_path / "zero").write_bytes(b"")
     told = refused([tmp_path, *(tmp_path / name for name in ("latin", "huge", "zero", "a\0b"))])
-    parts = ["Is a directory", "can't decode", "more than 65536", "found no parameter", "null"]
+    parts = ["Is a directory", "not UTF-8 text", "more than 65536", "found no parameter", "null"]
     assert all(part in line for part, line in zip(parts, told, strict=True))
 
 

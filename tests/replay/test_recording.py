@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from safety_island import params
 from safety_island.errors import IslandError
 from safety_island.replay.feed import Replay
 from safety_island.replay.recording import (
@@ -60,11 +61,11 @@ def test_a_trajectory_is_new_when_its_row_changes(tmp_path: Path) -> None:
     assert run.has_new_trajectory(0)
 
 
-def test_parameters_that_are_text_are_read_as_yaml(tmp_path: Path) -> None:
+def test_parameters_that_are_text_are_read_as_in_a_file(tmp_path: Path) -> None:
     overrides = {"input_delay": "0.24", "enable_path_smoothing": "true", "ctrl_period": 0.15}
     run = load(write(tmp_path / "a.npz", params_json=np.array(json.dumps(overrides))))
-    expected = {"input_delay": 0.24, "enable_path_smoothing": True, "ctrl_period": 0.15}
-    assert run.overrides == expected
+    found = params.from_mapping(run.overrides, "firmware").lateral
+    assert (found.input_delay, found.enable_path_smoothing) == (0.24, True)
 
 
 @pytest.mark.parametrize(
@@ -99,7 +100,8 @@ def test_parameters_that_are_text_are_read_as_yaml(tmp_path: Path) -> None:
         (changed("state", 13, 4, 256.0), "'mode' reaches beyond"),
         ({"params_json": np.array("{")}, "params_json: Expecting"),
         ({"params_json": np.array("[1]")}, "params_json is not a map"),
-        ({"params_json": np.array('{"input_delay": "[1"}')}, "params_json: while parsing"),
+        ({"params_json": np.array("[" * 100_000)}, "params_json: "),
+        ({"params_json": np.array('{"a": ' + "9" * 5000 + "}")}, "params_json: Exceeds the limit"),
         ({"state": np.array([1, None], dtype=object)}, "Object arrays cannot be loaded"),
     ],
 )
@@ -180,6 +182,8 @@ def test_a_folder_without_a_run(tmp_path: Path) -> None:
         ({"ctrl_perid": 0.15}, "nearest known key is ctrl_period"),
         ({"ctrl_period": -1}, "found -1"),
         ({"qp_solver_type": "magic"}, "magic"),
+        ({"input_delay": "[1"}, "input_delay"),
+        ({"input_delay": {"a": {"b": 1}}}, "input_delay.a.b"),
     ],
 )
 def test_parameters_that_cannot_be_used_are_told_with_the_file(

@@ -11,6 +11,7 @@ from typing import NoReturn
 import yaml
 
 from safety_island.errors import ConfigurationError
+from safety_island.text_file import UnreadableError, read_text
 
 _SWITCH = {
     **dict.fromkeys(("true", "yes", "on", "y"), True),
@@ -128,14 +129,11 @@ def load(path: str) -> yaml.Node | None:
     Raises ConfigurationError when it is no YAML.
     """
     try:
-        text = Path(path).read_text(encoding="utf-8")
+        text = read_text(Path(path))
         _check_nesting(path, text)
         node: yaml.Node | None = yaml.compose(text, Loader=yaml.SafeLoader)
-    except OSError as problem:
-        reason = problem.strerror or str(problem)
-        raise ConfigurationError(f"cannot read bridge file {path}: {reason}") from None
-    except UnicodeDecodeError:
-        raise ConfigurationError(f"{path}: not UTF-8 text, expected a YAML file") from None
+    except UnreadableError as why:
+        raise ConfigurationError(f"cannot read bridge file {path}: {why}") from None
     except yaml.YAMLError as problem:
         raise ConfigurationError(f"{path}:{_line(problem)}: not YAML: {_reason(problem)}") from None
     return node

@@ -13,6 +13,8 @@ from safety_island.build.kconfig_fragment import PREFIX, read_lines, unquote
 from safety_island.errors import ConfigurationError
 
 Value = bool | int | str
+MAX_DIGITS = 18
+"""Of a whole number: what 64 bits hold."""
 Where = Callable[[str], str]
 """Where the value of a symbol comes from, for an error message."""
 
@@ -172,7 +174,7 @@ def symbols_of(dotconfig: str, name: str = ".config") -> dict[str, Value]:
             found[symbol] = value == "y"
         elif text is not None:
             found[symbol] = text
-        elif value.isascii() and value.isdigit():
+        elif value.isascii() and value.isdigit() and len(value) <= MAX_DIGITS:
             found[symbol] = int(value)
         else:
             raise ConfigurationError(f"{place}: {PREFIX}{symbol}={value}: not a value of a .config")

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from safety_island.errors import ConfigurationError
+from safety_island.text_file import UnreadableError, read_text
 
 PREFIX = "CONFIG_"
 OVERRIDE = "-D"
@@ -41,10 +42,9 @@ def read_fragment(path: Path) -> list[Assignment]:
     """Read a fragment. Raises ConfigurationError with every line that cannot be read."""
     name = shown(path)
     try:
-        text = path.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = error.strerror if isinstance(error, OSError) else "it is not UTF-8 text"
-        raise ConfigurationError(f"{name}: cannot read this configuration: {reason}") from error
+        text = read_text(path)
+    except UnreadableError as why:
+        raise ConfigurationError(f"{name}: cannot read this configuration: {why}") from None
     return read_lines(text, name)
 
 

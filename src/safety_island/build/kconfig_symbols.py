@@ -21,7 +21,7 @@ from safety_island.errors import ConfigurationError
 
 Value = bool | int | str
 
-_WHOLE = re.compile(r"-?[0-9]+")
+_WHOLE = re.compile(r"-?[0-9]{1,18}")
 
 
 def load_kconfig(path: Path) -> Any:

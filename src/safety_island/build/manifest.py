@@ -56,5 +56,5 @@ def is_current(path: Path, inputs: Mapping[str, Any]) -> bool:
         if manifest["inputs"] != json.loads(json.dumps(inputs)):
             return False
         return artefact_section(path.parent, listed) == dict(listed)
-    except (OSError, ValueError, KeyError, TypeError):
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return False

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Iterator
 from typing import Any, cast
 
@@ -29,14 +30,16 @@ def check_dbc(text: str) -> list[str]:
     """
     import cantools
 
+    logging.getLogger("cantools").addHandler(logging.NullHandler())  # it logs what we return
     try:
         database: Any = cantools.database.load_string(text, database_format="dbc", strict=True)
     except Exception as error:  # cantools and its parser have many exceptions
         return [f"not a valid DBC file: {' '.join(str(error).split())}"]
-    differences = []
-    for frame in FRAMES:
-        differences += list(_frame_differences(database, frame))
-    return differences or list(_round_trip_differences(database))
+    try:
+        differences = [line for row in FRAMES for line in _frame_differences(database, row)]
+        return differences or list(_round_trip_differences(database))
+    except OverflowError as error:
+        return [f"not a valid DBC file: {error}"]
 
 
 def _frame_differences(database: Any, frame: Frame) -> Iterator[str]:

@@ -34,6 +34,8 @@ _ENCODINGS = {
     codecs.BOM_UTF16_BE: "utf-16",
 }
 _HEAD = 64
+LONGEST_LINE = 1 << 16
+"""Characters of a line; a device or another kind of file may have no end of a line at all."""
 
 
 class LogError(IslandError):
@@ -93,6 +95,16 @@ def kind_of(file: BinaryIO, name: str) -> LogKind:
     if suffixes and suffixes[-1].lower() in _PACKED_SUFFIXES:
         suffixes.pop()
     return _SUFFIXES.get(suffixes[-1].lower(), LogKind.CANDUMP) if suffixes else LogKind.CANDUMP
+
+
+def lines_of(text: TextIO, name: str) -> Iterator[str]:
+    """Yield the lines of a text. Raises LogError for one without an end, as a device has."""
+    number = 0
+    while line := text.readline(LONGEST_LINE):
+        number += 1
+        if len(line) == LONGEST_LINE:
+            raise LogError(f"{name}:{number}: a line without an end, expected a CAN log")
+        yield line
 
 
 @contextmanager

@@ -9,7 +9,7 @@ from typing import Any, BinaryIO
 
 from safety_island.can.candump import LogEntry, parse_line
 from safety_island.can.frames import COMMAND_IDS, FRAME_BYTES
-from safety_island.can.log_files import LogError, LogKind, as_text, kind_of, unpacked
+from safety_island.can.log_files import LogError, LogKind, as_text, kind_of, lines_of, unpacked
 from safety_island.can.log_lines import END_OF_HEADER, AscLines, LogLines, LogNotes, length_is_wrong
 
 __all__ = ["STANDARD_INPUT", "LogError", "LogNotes", "read_log"]
@@ -63,9 +63,10 @@ def _read(packed: BinaryIO, name: str, notes: LogNotes) -> Iterator[LogEntry]:
         return
     with as_text(file) as text:
         if kind is LogKind.CANDUMP:
-            yield from _candump(LogLines(text, notes))
+            yield from _candump(LogLines(lines_of(text, name), notes))
         else:
-            lines = AscLines(text, notes) if kind is LogKind.ASC else LogLines(text, notes)
+            reading = AscLines if kind is LogKind.ASC else LogLines
+            lines = reading(lines_of(text, name), notes)
             yield from _text_of_python_can(kind, lines)
 
 

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable
 from safety_island.can.backends import BACKENDS
 from safety_island.can.frames import FRAMES, Signal
 from safety_island.can.mode import TARGET_OUTPUT, OutputMode
+from safety_island.errors import ConfigurationError
 
 _BLOCK = re.compile(r"(<!-- table: (\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
 
@@ -85,6 +86,13 @@ TABLES: dict[str, Callable[[], str]] = {
 def refresh(page: str) -> str:
     """Return a page of Markdown with each marked table made anew.
 
-    A table stands between ``<!-- table: NAME -->`` and ``<!-- end -->``.
+    A table stands between ``<!-- table: NAME -->`` and ``<!-- end -->``. Raises ConfigurationError
+    for a name that no table has.
     """
-    return _BLOCK.sub(lambda match: match[1] + TABLES[match[2]]() + match[3], page)
+    return _BLOCK.sub(lambda match: match[1] + _table_named(match[2]) + match[3], page)
+
+
+def _table_named(name: str) -> str:
+    if name not in TABLES:
+        raise ConfigurationError(f"no table is named '{name}', expected {' or '.join(TABLES)}")
+    return TABLES[name]()

@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 from safety_island.errors import ConfigurationError
+from safety_island.text_file import UnreadableError, read_text
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -60,9 +61,9 @@ def execute_tables(arguments: argparse.Namespace) -> int:
 
 def _read(name: str) -> str:
     try:
-        return Path(name).read_text(encoding="utf-8", errors="replace")
-    except OSError as error:
-        raise ConfigurationError(f"{name}: cannot be read: {error.strerror}") from error
+        return read_text(Path(name))
+    except UnreadableError as why:
+        raise ConfigurationError(f"{name}: cannot be read: {why}") from None
 
 
 def _write(name: str, text: str) -> None:

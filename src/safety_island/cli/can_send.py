@@ -15,6 +15,8 @@ from safety_island.cli.can_monitor import DEFAULT_BUS
 from safety_island.errors import IslandError
 
 _NS_PER_S = 1_000_000_000
+_LATEST_S = 1 << 32
+"""A stamp counts seconds in 32 bits."""
 # What argparse may take for a value although it begins with a dash: also -1e-3, -inf and -nan.
 _NEGATIVE = re.compile(r"^-(\d+\.?\d*|\.\d+|inf|nan)(e[-+]?\d+)?$", re.IGNORECASE)
 _VALUES = (
@@ -111,7 +113,7 @@ def _sequence(text: str) -> int:
 def _stamp_ns(text: str) -> int:
     try:
         stamp = Decimal(text)
-        if stamp.is_finite() and stamp >= 0:
+        if 0 <= stamp <= _LATEST_S:
             return int(stamp * _NS_PER_S)
     except InvalidOperation:
         pass

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 
 from safety_island import __version__
 from safety_island.cli import streams
+from safety_island.cli.foreign import printable
 from safety_island.cli.memory_limit import check_memory_limit
 from safety_island.cli.parser import Parser, UsageError, nearest
 from safety_island.cli.table import COMMANDS, Command, find, load
@@ -17,6 +18,9 @@ from safety_island.errors import IslandError
 
 DEBUG = "SAFETY_ISLAND_DEBUG"
 """Environment variable that lets an unforeseen exception show where it comes from."""
+
+MOST_LINES = 200
+"""Of mistakes in a file that are shown: more than a good file has lines to go wrong in."""
 
 PURPOSE = """\
 Autoware's trajectory follower as a safety island: it reads five ROS 2 topics on a DDS domain of
@@ -94,6 +98,9 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _complain(message: str, code: int) -> int:
-    for line in message.splitlines():
-        tell(f"island: error: {line}")
+    lines = message.splitlines()
+    if len(lines) > MOST_LINES:
+        lines[MOST_LINES:] = [f"and {len(lines) - MOST_LINES} more of this kind"]
+    for line in lines:
+        tell(f"island: error: {printable(line)}")
     return code

@@ -16,6 +16,7 @@ from safety_island.dds.config import URI, DdsConfig, check_domain_id, defaults_x
 from safety_island.dds.network import check_peer
 from safety_island.dds.stderr import captured_stderr
 from safety_island.errors import ConfigurationError
+from safety_island.text_file import UnreadableError, read_text
 
 
 @dataclass
@@ -86,9 +87,10 @@ def _check_user_xml(part: str) -> None:
     if not part.startswith("<"):
         where = part.removeprefix("file://")
         try:
-            text = Path(where).read_text(encoding="utf-8")
-        except (OSError, UnicodeDecodeError) as problem:
-            raise ConfigurationError(f"{URI}: cannot read {where}: {problem}") from None
+            text = read_text(Path(where))
+        except UnreadableError as why:
+            shown = where if where.isprintable() else repr(where)
+            raise ConfigurationError(f"{URI}: cannot read {shown}: {why}") from None
     try:
         root = ElementTree.fromstring(text)
     except ElementTree.ParseError as problem:

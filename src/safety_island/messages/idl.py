@@ -28,6 +28,8 @@ _TOKEN = re.compile(
     re.VERBOSE | re.DOTALL,
 )
 _CONSTANTS = "_Constants"
+_MAX_DEPTH = 20
+"""Modules in each other; ROS 2 has two or three."""
 
 
 def parse_idl(text: str, source: str = "<idl>") -> list[Struct]:
@@ -47,14 +49,14 @@ class _Parser:
         self._constants: dict[str, dict[str, int]] = {}
 
     def _scan(self, text: str) -> Iterator[tuple[str, int]]:
-        place = 0
+        place, line = 0, 1
         while place < len(text):
             match = _TOKEN.match(text, place)
-            line = text.count("\n", 0, place) + 1
             if match is None:
                 raise IdlError(f"{self._source}:{line}: unexpected character {text[place]!r}")
             if match.lastgroup != "skip":
                 yield match.group(), line
+            line += match.group().count("\n")
             place = match.end()
 
     def file(self) -> list[Struct]:
@@ -65,6 +67,8 @@ class _Parser:
     def _module(self, path: tuple[str, ...]) -> None:
         self._expect("module")
         path = (*path, self._next())
+        if len(path) > _MAX_DEPTH:
+            raise self._error(f"more than {_MAX_DEPTH} modules in each other")
         self._expect("{")
         while self._peek() != "}":
             self._skip_annotations()
@@ -122,9 +126,10 @@ class _Parser:
 
     def _sequence(self) -> Sequence:
         self._expect("<")
-        element = self._type()
-        if isinstance(element, Sequence):
+        if self._peek() == "sequence":
             raise self._error("a sequence of sequences is not supported")
+        element = self._type()
+        assert not isinstance(element, Sequence)
         bound = None
         if self._peek() == ",":
             self._next()
@@ -153,7 +158,7 @@ class _Parser:
             name = self._next()
             arguments = self._arguments() if self._peek() == "(" else {}
             if name == "default":
-                default = _literal(arguments["value"])
+                default = self._literal(arguments.get("value", "nothing"))
         return default
 
     def _arguments(self) -> dict[str, str]:
@@ -170,6 +175,15 @@ class _Parser:
                 self._next()
         self._expect(")")
         return found
+
+    def _literal(self, word: str) -> float | int | bool | str:
+        if word in ("TRUE", "FALSE"):
+            return word == "TRUE"
+        try:
+            value: float | int | str = ast.literal_eval(word)
+        except (ValueError, SyntaxError):
+            raise self._error(f"found {word!r}, expected a value") from None
+        return value
 
     def _peek(self) -> str:
         return self._tokens[self._at][0] if self._at < len(self._tokens) else ""
@@ -189,10 +203,3 @@ class _Parser:
     def _error(self, message: str) -> IdlError:
         line = self._tokens[min(self._at, len(self._tokens)) - 1][1] if self._tokens else 1
         return IdlError(f"{self._source}:{line}: {message}")
-
-
-def _literal(word: str) -> float | int | bool | str:
-    if word in ("TRUE", "FALSE"):
-        return word == "TRUE"
-    value: float | int | str = ast.literal_eval(word)
-    return value

@@ -40,7 +40,7 @@ def whole_numbers(values: npt.NDArray[Any], name: str, dimensions: int = 1) -> W
 
 def as_message(values: Table) -> Table:
     """Round values to what a float32 of a message holds; too large a one becomes infinite."""
-    with np.errstate(over="ignore"):
+    with np.errstate(over="ignore", invalid="ignore"):  # invalid: a signalling NaN
         return values.astype(np.float32).astype(np.float64)
 
 

@@ -91,9 +91,10 @@ def _polished(run: Recording) -> npt.NDArray[np.bool_] | None:
 
 
 def _difference(recorded: Table, replayed: Table) -> Table:
-    """Absolute difference; two NaN are equal, one NaN is infinitely far."""
+    """Absolute difference; two NaN are equal, one NaN or infinity is infinitely far."""
     both = np.isnan(recorded) & np.isnan(replayed)
-    difference = np.abs(np.where(both, 0.0, recorded - replayed))
+    with np.errstate(invalid="ignore", over="ignore"):  # a file may say infinity
+        difference = np.abs(np.where(both, 0.0, recorded - replayed))
     return np.where(np.isnan(difference), np.inf, difference)
 
 

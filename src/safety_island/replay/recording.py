@@ -6,9 +6,9 @@ The files are NumPy archives without pickles; their arrays are described in ``do
 from __future__ import annotations
 
 import json
-import struct
+import sys
+import warnings
 import zipfile
-import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,7 +16,6 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-import yaml
 
 from safety_island.control.records import POINT, Records
 from safety_island.errors import IslandError
@@ -44,11 +43,8 @@ _ARRAYS = (
     *("state", "state_cols", "deliver_mask", "path_points", "path_offsets"),
     *("traj_select", "output", "output_cols", "params_json"),
 )
-_UNREADABLE = (
-    *(OSError, ValueError, EOFError, MemoryError, SyntaxError, RuntimeError, OverflowError),
-    *(zipfile.BadZipFile, zlib.error, struct.error, KeyError),
-)
-"""What reading an archive raises when its bytes are garbled."""
+MAX_BYTES = 1 << 29
+"""What the arrays of a recording may hold together: some hundred times the longest one."""
 
 
 class RecordingError(IslandError):
@@ -110,22 +106,62 @@ class Recording:
 
 def load(path: Path) -> Recording:
     """Read a recorded run. Raises RecordingError with what is wrong with the file."""
+    _require(path)
     try:
-        if path.exists() and not zipfile.is_zipfile(path):
+        if not zipfile.is_zipfile(path):
             raise RecordingError(f"{path} is no recorded run: expected a NumPy archive (.npz)")
-        with np.load(path, allow_pickle=False) as data:
-            missing = [name for name in _ARRAYS if name not in data.files]
-            if missing:
-                raise RecordingError(
-                    f"{path} is no recorded run: it lacks the array '{missing[0]}' "
-                    f"(it holds {', '.join(data.files[:6])}, ...)"
-                )
-            arrays = {name: data[name] for name in _ARRAYS}
-    except FileNotFoundError:
-        raise RecordingError(f"{path} does not exist: name a recorded run (.npz)") from None
-    except _UNREADABLE as error:
-        raise RecordingError(f"{path} cannot be read as a recorded run: {error}") from None
+        _check_size(path)
+        arrays = _arrays(path)
+    except IslandError:
+        raise
+    except Exception as error:  # zipfile, zlib and numpy's own parser raise what they like
+        why = " ".join(str(error).split()) or type(error).__name__
+        raise RecordingError(f"{path} cannot be read as a recorded run: {why}") from None
     return _checked(path, arrays)
+
+
+def _require(path: Path) -> None:
+    """Refuse a path that does not exist, or that cannot be looked at."""
+    try:
+        exists = path.exists()
+    except OSError as error:
+        raise RecordingError(f"{path} cannot be read: {error.strerror}") from None
+    if not exists:
+        raise RecordingError(f"{path} does not exist: name a recorded run (.npz)")
+
+
+def _check_size(path: Path) -> None:
+    """Refuse what would unpack to more than memory should hold; no member becomes larger."""
+    with zipfile.ZipFile(path) as archive:
+        size = sum(member.file_size for member in archive.infolist())
+    if size > MAX_BYTES:
+        raise RecordingError(
+            f"{path} is no recorded run: its arrays have {size} bytes, expected at most {MAX_BYTES}"
+        )
+
+
+def _arrays(path: Path) -> dict[str, npt.NDArray[Any]]:
+    with warnings.catch_warnings(), np.load(path, allow_pickle=False) as data:
+        warnings.simplefilter("ignore")  # of numpy, about headers that it mends
+        missing = [name for name in _ARRAYS if name not in data.files]
+        if missing:
+            raise RecordingError(
+                f"{path} is no recorded run: it lacks the array '{missing[0]}' "
+                f"(it holds {', '.join(data.files[:6])}, ...)"
+            )
+        return {name: _array(data, name) for name in _ARRAYS}
+
+
+def _array(data: Any, name: str) -> npt.NDArray[Any]:
+    """Return a member; numpy gives bytes for one without the head of an array."""
+    array = data[name]
+    if not isinstance(array, np.ndarray):
+        raise ValueError(f"{name} is no array")
+    if array.dtype.kind == "U":  # numpy does not look whether these are characters
+        codes = np.frombuffer(array.tobytes(), np.dtype("u4").newbyteorder(array.dtype.byteorder))
+        if (codes > sys.maxunicode).any():
+            raise ValueError(f"{name} is no text")
+    return array
 
 
 def _checked(path: Path, arrays: dict[str, npt.NDArray[Any]]) -> Recording:
@@ -149,14 +185,14 @@ def _checked(path: Path, arrays: dict[str, npt.NDArray[Any]]) -> Recording:
 
 
 def _overrides(text: str) -> dict[str, Any]:
-    """Return the parameters that a run changed; values that are text are read as YAML scalars."""
+    """Return the parameters that a run changed; what a text means, params says."""
     try:
         values = json.loads(text)
-        if isinstance(values, dict):
-            return {k: yaml.safe_load(v) if isinstance(v, str) else v for k, v in values.items()}
-    except (ValueError, yaml.YAMLError) as error:
-        raise ValueError(f"params_json: {str(error).splitlines()[0]}") from None
-    raise ValueError("params_json is not a map")
+    except (ValueError, RecursionError) as error:
+        raise ValueError(f"params_json: {error}") from None
+    if not isinstance(values, dict):
+        raise ValueError("params_json is not a map")
+    return values
 
 
 def _check(run: Recording) -> None:
@@ -185,9 +221,8 @@ def find(paths: Sequence[Path]) -> list[Path]:
     """
     found: list[Path] = []
     for path in paths:
+        _require(path)
         if not path.is_dir():
-            if not path.exists():
-                raise RecordingError(f"{path} does not exist: name a recorded run (.npz)")
             found.append(path)
             continue
         runs = sorted(p for p in path.rglob("*.npz") if "_dump" not in p.stem)
