@@ -9,12 +9,11 @@ from difflib import get_close_matches
 from typing import Any, Literal
 from xml.sax.saxutils import quoteattr
 
-from safety_island.dds.network import check_interface, check_peer
+from safety_island.dds.network import LOOPBACK, check_interface, check_peer
 from safety_island.errors import ConfigurationError
 
 MAX_DOMAIN_ID = 232
 """The highest domain id whose ports fit into 16 bits (RTPS 2.5, section 9.6.2.3)."""
-LOOPBACK = "lo"
 URI = "CYCLONEDDS_URI"
 
 Multicast = Literal["spdp", "off", "full"]

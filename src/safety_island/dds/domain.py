@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 import threading
 import xml.etree.ElementTree as ElementTree
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,7 +15,9 @@ from cyclonedds.domain import Domain
 
 from safety_island.dds import binding
 from safety_island.dds.config import URI, DdsConfig, check_domain_id, defaults_xml, user_xml
+from safety_island.dds.errors import DdsError
 from safety_island.dds.network import check_peer
+from safety_island.dds.receive_filter import Sockets, opened_sockets
 from safety_island.dds.stderr import captured_stderr
 from safety_island.errors import ConfigurationError
 
@@ -21,6 +25,7 @@ from safety_island.errors import ConfigurationError
 @dataclass
 class _Open:
     domain: Domain
+    interfaces: frozenset[int]
     xml: str
     users: int
 
@@ -40,13 +45,25 @@ def open_domain(domain_id: int, config: DdsConfig) -> None:
     with _lock:
         found = _open.get(domain_id)
         if found is None:
-            _open[domain_id] = _Open(_start(domain_id, xml), xml, 1)
+            _open[domain_id] = _Open(*_start(domain_id, xml), xml, 1)
         elif found.xml != xml:
             raise ConfigurationError(
                 f"domain {domain_id} is already open in this process with another configuration"
             )
         else:
             found.users += 1
+
+
+@contextmanager
+def closed_to_other_interfaces(domain_id: int) -> Iterator[None]:
+    """Close what sockets are opened inside as the domain's own are (one for each participant).
+
+    Raises DdsError when they cannot be closed.
+    """
+    with _lock:
+        with opened_sockets() as opened:
+            yield
+        opened.receive_only_from(_open[domain_id].interfaces)
 
 
 def close_domain(domain_id: int) -> None:
@@ -100,12 +117,24 @@ def _check_user_xml(part: str) -> None:
             check_peer(element.get("Address") or element.get("address") or "")
 
 
-def _start(domain_id: int, xml: str) -> Domain:
+def _start(domain_id: int, xml: str) -> tuple[Domain, frozenset[int]]:
+    """Start the library's domain; also the interfaces that its sockets were closed to all but."""
     try:
-        with captured_stderr() as said:
-            return Domain(domain_id, xml)
+        with opened_sockets() as opened, captured_stderr() as said:
+            domain = Domain(domain_id, xml)
     except DDSException as problem:
         raise ConfigurationError(_explain(domain_id, said.cause or str(problem))) from None
+    try:
+        return domain, _close_to_others(opened)
+    except DdsError:
+        binding.delete(domain)
+        raise
+
+
+def _close_to_others(opened: Sockets) -> frozenset[int]:
+    interfaces = opened.interfaces()
+    opened.receive_only_from(interfaces)
+    return interfaces
 
 
 def _explain(domain_id: int, cause: str) -> str:

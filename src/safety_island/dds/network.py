@@ -8,6 +8,7 @@ from pathlib import Path
 
 from safety_island.errors import ConfigurationError
 
+LOOPBACK = "lo"
 _SYSFS = Path("/sys/class/net")
 _UP = 0x1
 
