@@ -59,7 +59,7 @@ is there, takes over its reliability and durability, and never feeds its own out
         choices=tuple(SWITCH),
         help="close a route again when what it waited for is gone (default: false)",
     )
-    options.add_interface(parser)
+    options.add_network(parser)
     options.add_duration(parser, 0.0)
     options.add_json(parser, "counts, once a second,")
 
@@ -80,7 +80,6 @@ def execute(arguments: argparse.Namespace) -> int:
     with StopAtOnce() as start:
         from safety_island.bridge import BridgeOptions, run
         from safety_island.bridge.link import WaitFor
-        from safety_island.dds.config import DdsConfig
         from safety_island.platform import load
 
         chosen = BridgeOptions(
@@ -92,7 +91,7 @@ def execute(arguments: argparse.Namespace) -> int:
                 subscription=SWITCH[arguments.wait_for_subscription],
                 auto_remove=SWITCH[arguments.auto_remove],
             ),
-            dds=DdsConfig(interface=arguments.interface),
+            dds=options.dds_config(arguments),
             duration_s=arguments.duration,
         )
         stop = StopFlag()

@@ -23,7 +23,12 @@ class Captured:
     @property
     def cause(self) -> str:
         """All lines as one, for an error message."""
-        return "; ".join(line.strip() for line in _PREFIX.sub("", self.raw).splitlines() if line)
+        return cause(self.raw)
+
+
+def cause(text: str) -> str:
+    """Return lines of the library as one, without their time stamps."""
+    return "; ".join(line.strip() for line in _PREFIX.sub("", text).splitlines() if line)
 
 
 @contextmanager
