@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ElementTree
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -115,24 +114,10 @@ def test_a_tag_that_cannot_be_sent_is_refused(tag: str) -> None:
         DdsConfig(domain_tags=((2, tag),))
 
 
-@pytest.fixture
-def flags(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Callable[[str, int], None]:
-    """Set what the kernel says of an interface."""
-    monkeypatch.setattr(network, "_SYSFS", tmp_path)
-
-    def set_flags(name: str, value: int) -> None:
-        (tmp_path / name).mkdir()
-        (tmp_path / name / "flags").write_text(f"{value:#x}\n")
-
-    return set_flags
-
-
 def test_an_interface_without_multicast_is_told_when_no_peer_is_named(
-    flags: Callable[[str, int], None],
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    flags("wg0", 0x91)
-    flags("eth0", 0x1003)
-    flags("lo", 0x9)
+    monkeypatch.setattr(network, "flags", {"wg0": 0x91, "eth0": 0x1003, "lo": 0x9}.get)
     said = DdsConfig(interface="wg0").warning()
     assert said is not None and "'wg0' carries no multicast" in said and "--peer ADDRESS" in said
     assert DdsConfig(interface="wg0", peers=("10.0.0.2",)).warning() is None
@@ -140,6 +125,11 @@ def test_an_interface_without_multicast_is_told_when_no_peer_is_named(
     assert LOOPBACK.warning() is None
     assert text(DdsConfig(interface="wg0"), "Discovery/ParticipantIndex") == "auto"
     assert text(DdsConfig(interface="eth0"), "Discovery/ParticipantIndex") == "none"
+
+
+def test_the_kernel_tells_the_flags_of_an_interface() -> None:
+    assert network.flags("lo") & 0x9 == 0x9
+    assert network.flags("nowhere9") == 0x1001
 
 
 def test_the_other_settings() -> None:
@@ -209,12 +199,8 @@ def test_a_wrong_interface_is_told_with_those_that_exist(
     assert "did you mean tap1?" in said
 
 
-def test_an_interface_that_is_down_is_told(
-    domain_id: int, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    (tmp_path / "lo").mkdir()
-    (tmp_path / "lo" / "flags").write_text("0x8\n")
-    monkeypatch.setattr(network, "_SYSFS", tmp_path)
+def test_an_interface_that_is_down_is_told(domain_id: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(network, "flags", {"lo": 0x8}.get)
     assert "network interface 'lo' is down; run: ip link set lo up" in refusal(domain_id)
 
 

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+import fcntl
 import socket
+import struct
 from contextlib import suppress
 from difflib import get_close_matches
 from ipaddress import ip_address
-from pathlib import Path
 
 from safety_island.errors import ConfigurationError
 
 LOOPBACK = "lo"
-_SYSFS = Path("/sys/class/net")
+_SIOCGIFFLAGS = 0x8913
 _UP = 0x1
 _MULTICAST = 0x1000
 
@@ -36,7 +37,7 @@ def check_exists(name: str) -> None:
 def check_interface(name: str) -> None:
     """Raise ConfigurationError unless the interface exists and is up."""
     check_exists(name)
-    if not _is_up(name):
+    if not flags(name) & _UP:
         raise ConfigurationError(f"network interface {name!r} is down; run: ip link set {name} up")
 
 
@@ -61,15 +62,14 @@ def unknown_peer(peer: str) -> str:
 
 def has_multicast(name: str) -> bool:
     """Return whether an interface carries multicast; loopback does, flag or not."""
-    return name == LOOPBACK or bool(_flags(name, _MULTICAST) & _MULTICAST)
+    return name == LOOPBACK or bool(flags(name) & _MULTICAST)
 
 
-def _is_up(name: str) -> bool:
-    return bool(_flags(name, _UP) & _UP)
-
-
-def _flags(name: str, otherwise: int) -> int:
+def flags(name: str) -> int:
+    """Return the flags of an interface; all of them when the kernel does not say."""
+    query = struct.pack("16s24x", name.encode())
     try:
-        return int((_SYSFS / name / "flags").read_text(), 16)
-    except (OSError, ValueError):
-        return otherwise
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as channel:
+            return int(struct.unpack_from("=H", fcntl.ioctl(channel, _SIOCGIFFLAGS, query), 16)[0])
+    except OSError:
+        return _UP | _MULTICAST
