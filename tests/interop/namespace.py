@@ -60,10 +60,13 @@ class Namespace:
         self._running.append(running)
         return running
 
-    def island(self, module: str, *arguments: str) -> Running:
+    def island(
+        self, module: str, *arguments: str, environment: Mapping[str, str] | None = None
+    ) -> Running:
         """Start a Python module of this repository inside."""
         paths = {"PYTHONPATH": f"{ROOT / 'src'}{os.pathsep}{ROOT}"}
-        return self.start([sys.executable, "-m", module, *arguments], paths)
+        command = [sys.executable, "-m", module, *arguments]
+        return self.start(command, {**(environment or {}), **paths})
 
     def run(self, *command: str) -> None:
         """Run a command inside to its end; it must succeed."""
@@ -122,6 +125,12 @@ class Running:
             if found := wanted(line):
                 return found
             seen.append(line)
+
+    def tell(self, line: str) -> None:
+        """Write a line to its standard input."""
+        assert self.process.stdin is not None
+        self.process.stdin.write(f"{line}\n")
+        self.process.stdin.flush()
 
     def close(self) -> None:
         """Ask the process to end, and end it when it does not."""

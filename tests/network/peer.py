@@ -2,8 +2,8 @@
 
 ``receive`` prints its UDP ports, then the angle of every steering report that it receives.
 ``publish ANGLE`` publishes one report when a subscription matches and prints the writer's GUID.
-``forge ANGLE GUID HOST PORT...`` sends one in that writer's name, as its second sample. The first
-two end when their standard input closes.
+``come-and-go [TAG]`` has a publisher until it is told a line. All of these end when their standard
+input closes. ``forge ANGLE GUID HOST PORT...`` sends one report in a writer's name, as its second.
 """
 
 from __future__ import annotations
@@ -63,6 +63,16 @@ def publish(domain_id: int, interface: str, angle: str) -> None:
         sys.stdin.read()
 
 
+def come_and_go(domain_id: int, interface: str, tag: str = "") -> None:
+    """Open a publisher, close it after a line of input, then stay."""
+    with Participant(domain_id, DdsConfig(interface=interface, domain_tag=tag)) as own:
+        publisher = own.publisher(ENTRY.name, ENTRY.type_name, ENTRY.qos)
+        print("open", flush=True)
+        sys.stdin.readline()
+        publisher.close()
+        sys.stdin.read()
+
+
 def forge(domain_id: int, _: str, angle: str, guid: str, host: str, *ports: str) -> None:
     """Send one sample in the name of another writer."""
     numbers = [int(port) for port in ports]
@@ -72,7 +82,12 @@ def forge(domain_id: int, _: str, angle: str, guid: str, host: str, *ports: str)
     print("sent", flush=True)
 
 
-ROLES: dict[str, Callable[..., None]] = {"receive": receive, "publish": publish, "forge": forge}
+ROLES: dict[str, Callable[..., None]] = {
+    "receive": receive,
+    "publish": publish,
+    "come-and-go": come_and_go,
+    "forge": forge,
+}
 
 if __name__ == "__main__":
     ROLES[sys.argv[1]](int(sys.argv[2]), *sys.argv[3:])

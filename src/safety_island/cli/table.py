@@ -31,6 +31,7 @@ COMMANDS = (
     Command("bench", "bench", "Measure the tick, or the way from odometry to command."),
     Command("params", "params", "Show or check controller parameters."),
     Command("can", "can", "Watch, send and describe the CAN command frames."),
+    Command("env", "env", "Print what other DDS programs need to meet the island."),
     Command("config", "config", "Show the configuration of a target."),
     Command("menuconfig", "menuconfig", "Choose the configuration of a target in a menu."),
     Command("build", "build", "Build a target: kernels, C headers, one self-contained program."),

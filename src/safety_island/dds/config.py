@@ -165,8 +165,33 @@ class DdsConfig:
             found += _element("Peers", self._peers())
         return _document(_element("Discovery", found)) if found else ""
 
+    def peer_xml(self, domain_id: int) -> str:
+        """Return the CycloneDDS configuration of a program that is to meet this one.
+
+        In elements that CycloneDDS 0.10 knows as well.
+        """
+        check_domain_id(domain_id)
+        general = self._interfaces() + self._transport()
+        if self._interface == LOOPBACK:
+            general += _element("AllowMulticast", self._allow_multicast())
+            discovery = _element("ParticipantIndex", "auto") + _element(
+                "MaxAutoParticipantIndex", str(max_participant_index(domain_id))
+            )
+            peers = ("127.0.0.1", *self.peers)
+        else:
+            general += _element("MaxMessageSize", f"{self.max_message_size}B")
+            discovery = _element("ParticipantIndex", "auto" if self.peers else "")
+            peers = self.peers
+        found = "".join(f"<Peer Address={quoteattr(peer)}/>" for peer in peers)
+        discovery += _element("Peers", found) + self._tag(domain_id)
+        return _document(_element("General", general) + _element("Discovery", discovery))
+
+    def tag(self, domain_id: int) -> str:
+        """Return the tag of a domain, empty when it has none."""
+        return dict(self.domain_tags).get(domain_id, self.domain_tag)
+
     def _tag(self, domain_id: int) -> str:
-        return _element("Tag", _escape(dict(self.domain_tags).get(domain_id, self.domain_tag)))
+        return _element("Tag", _escape(self.tag(domain_id)))
 
     def _peers(self) -> str:
         peers = (f'<Peer Address={quoteattr(p)} PruneDelay="inf"/>' for p in self.peers)
@@ -268,7 +293,7 @@ _COMPATIBILITY = _element(
     + _element("ExplicitlyPublishQosSetToDefault", "true"),
 )
 """Fast DDS 3 (ROS 2 Kilted) announces type information that the library cannot match with ours, and
-needs the participant of an endpoint said, default or not, to show whose node it belongs to."""
+knows history and depth of an endpoint only when they are sent, default or not."""
 _KEY_HASH = _element("GenerateKeyhash", "true")
 """Without it Fast DDS and CycloneDDS 0.10 do not see that an endpoint is closed."""
 
