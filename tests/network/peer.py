@@ -2,8 +2,9 @@
 
 ``receive`` prints its UDP ports, then the angle of every steering report that it receives.
 ``publish ANGLE`` publishes one report when a subscription matches and prints the writer's GUID.
-``come-and-go [TAG]`` has a publisher until it is told a line. All of these end when their standard
-input closes. ``forge ANGLE GUID HOST PORT...`` sends one report in a writer's name, as its second.
+``come-and-go [TAG]`` has a publisher of odometry until it is told a line. All of these end when
+their standard input closes. ``forge ANGLE GUID HOST PORT...`` sends one report in a writer's name,
+as its second.
 """
 
 from __future__ import annotations
@@ -25,6 +26,7 @@ from tests.dds.rtps import Forger
 from tests.dds.waiting import wait_for
 
 ENTRY = topics.STEERING
+ECHO = "/echo/odometry"
 
 
 def data(number: int, angle: str) -> bytes:
@@ -66,7 +68,7 @@ def publish(domain_id: int, interface: str, angle: str) -> None:
 def come_and_go(domain_id: int, interface: str, tag: str = "") -> None:
     """Open a publisher, close it after a line of input, then stay."""
     with Participant(domain_id, DdsConfig(interface=interface, domain_tag=tag)) as own:
-        publisher = own.publisher(ENTRY.name, ENTRY.type_name, ENTRY.qos)
+        publisher = own.publisher(ECHO, topics.ODOMETRY.type_name)
         print("open", flush=True)
         sys.stdin.readline()
         publisher.close()
