@@ -56,8 +56,7 @@ def test_sockets_without_a_known_interface_are_an_error() -> None:
 
 def test_the_filter_drops_by_the_interface_of_arrival(monkeypatch: pytest.MonkeyPatch) -> None:
     with udp("127.0.0.1") as receiver, udp("127.0.0.1") as sender:
-        found = Sockets()
-        found.descriptors = [receiver.fileno()]
+        found = Sockets(dict(receive_filter._sockets()))
         found.receive_only_from(frozenset({NOWHERE}))
         sender.sendto(b"over loopback", receiver.getsockname())
         assert receiver.recv(100) == b"over loopback"

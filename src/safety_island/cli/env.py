@@ -20,8 +20,8 @@ Print what another program needs to meet an island that runs with the same optio
 shell. A program with CycloneDDS that chooses a network interface by itself does not look on
 loopback, where the island is by default; one with Fast DDS does.
 """,
-        ('eval "$(island env)"', "ros2 in this terminal meets the island on domain 2"),
-        ('eval "$(island env --for cyclonedds)"; cyclonedds ls -i 2', "CycloneDDS's own command"),
+        ("island env", "variables for ros2 and the island on domain 2"),
+        ('eval "$(island env --for cyclonedds)"', "set those of a CycloneDDS program, here"),
         ("island env --interface eth0 --peer 192.168.7.2", "on a network without multicast"),
     )
     parser.add_argument(

@@ -15,8 +15,9 @@ from cyclonedds.domain import Domain
 from safety_island.dds import binding
 from safety_island.dds.config import DdsConfig, check_domain_id, defaults_xml
 from safety_island.dds.errors import DdsError
+from safety_island.dds.follow import InterfaceSockets, follow
 from safety_island.dds.network import unknown_peer
-from safety_island.dds.receive_filter import Sockets, opened_sockets
+from safety_island.dds.receive_filter import opened_sockets
 from safety_island.dds.stderr import captured_stderr
 from safety_island.dds.trial import why_fatal
 from safety_island.dds.user_xml import URI, check_user_xml, user_xml
@@ -26,7 +27,7 @@ from safety_island.errors import ConfigurationError
 @dataclass
 class _Open:
     domain: Domain
-    interfaces: frozenset[int]
+    sockets: InterfaceSockets
     xml: str
     users: int
 
@@ -47,6 +48,7 @@ def open_domain(domain_id: int, config: DdsConfig) -> None:
         found = _open.get(domain_id)
         if found is None:
             _open[domain_id] = _Open(*_start(domain_id, xml), xml, 1)
+            follow(_look_at_interfaces)
         elif found.xml != xml:
             raise ConfigurationError(
                 f"domain {domain_id} is already open in this process with another configuration"
@@ -64,7 +66,7 @@ def closed_to_other_interfaces(domain_id: int) -> Iterator[None]:
     with _lock:
         with opened_sockets() as opened:
             yield
-        opened.receive_only_from(_open[domain_id].interfaces)
+        _open[domain_id].sockets.add(opened)
 
 
 def close_domain(domain_id: int) -> None:
@@ -94,24 +96,30 @@ def _effective_xml(domain_id: int, config: DdsConfig) -> str:
     return xml
 
 
-def _start(domain_id: int, xml: str) -> tuple[Domain, frozenset[int]]:
-    """Start the library's domain; also the interfaces that its sockets were closed to all but."""
+def _look_at_interfaces() -> None:
+    """Follow the interfaces of all domains after a change, and say what changed."""
+    with _lock:
+        for domain_id, found in _open.items():
+            try:
+                lines = list(found.sockets.update())
+            except DdsError as problem:
+                lines = [str(problem)]
+            for line in lines:
+                print(f"island: DDS domain {domain_id}: {line}", file=sys.stderr, flush=True)
+
+
+def _start(domain_id: int, xml: str) -> tuple[Domain, InterfaceSockets]:
+    """Start the library's domain, and close its sockets to all interfaces but those it uses."""
     try:
         with opened_sockets() as opened, captured_stderr() as said:
             domain = Domain(domain_id, xml)
     except DDSException as problem:
         raise ConfigurationError(_explain(domain_id, said.cause or str(problem))) from None
     try:
-        return domain, _close_to_others(opened)
+        return domain, InterfaceSockets(opened)
     except DdsError:
         binding.delete(domain)
         raise
-
-
-def _close_to_others(opened: Sockets) -> frozenset[int]:
-    interfaces = opened.interfaces()
-    opened.receive_only_from(interfaces)
-    return interfaces
 
 
 def _explain(domain_id: int, cause: str) -> str:

@@ -37,7 +37,7 @@ def check_exists(name: str) -> None:
 def check_interface(name: str) -> None:
     """Raise ConfigurationError unless the interface exists and is up."""
     check_exists(name)
-    if not flags(name) & _UP:
+    if not is_up(name):
         raise ConfigurationError(f"network interface {name!r} is down; run: ip link set {name} up")
 
 
@@ -63,6 +63,11 @@ def unknown_peer(peer: str) -> str:
 def has_multicast(name: str) -> bool:
     """Return whether an interface carries multicast; loopback does, flag or not."""
     return name == LOOPBACK or bool(flags(name) & _MULTICAST)
+
+
+def is_up(name: str) -> bool:
+    """Return whether an interface is up."""
+    return bool(flags(name) & _UP)
 
 
 def flags(name: str) -> int:

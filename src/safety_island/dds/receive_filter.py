@@ -36,17 +36,28 @@ _ALL_BYTES = 0xFFFFFFFF
 class Sockets:
     """The network sockets that the library opened during one call."""
 
-    def __init__(self) -> None:
-        self.descriptors: list[int] = []
+    def __init__(self, identities: dict[int, str] | None = None) -> None:
+        """``identities``: descriptors and what the kernel calls the sockets behind them."""
+        self._identities = dict(identities or {})
+
+    @property
+    def descriptors(self) -> list[int]:
+        """Those that still stand for the same sockets."""
+        now = dict(_sockets())
+        return [number for number, its in self._identities.items() if now.get(number) == its]
+
+    def add(self, others: Sockets) -> None:
+        """Take in sockets that were opened later."""
+        self._identities |= others._identities
 
     def interfaces(self) -> frozenset[int]:
         """Return the indices of the interfaces that are in use: those that it transmits on.
 
         Raises DdsError when there are sockets but no such interface.
         """
-        used = self._bound_addresses()
-        found = frozenset(index for address, index in _addresses() if address in used)
-        if not found and any(self._open()):
+        used = self.addresses()
+        found = frozenset(index for address, index in machine_addresses() if address in used)
+        if not found and any(self.open()):
             raise DdsError(
                 "the DDS sockets cannot be closed to other network interfaces: the addresses"
                 f" {sorted(used)} that they send from are on no interface of this machine"
@@ -60,7 +71,7 @@ class Sockets:
         """
         program = _program(sorted(interfaces | {socket.if_nametoindex(LOOPBACK)}))
         try:
-            for opened in self._open():
+            for opened in self.open():
                 _attach(opened, program)
         except OSError as problem:
             raise DdsError(
@@ -69,11 +80,13 @@ class Sockets:
                 " allows socket filters, without a sandbox that forbids them"
             ) from None
 
-    def _bound_addresses(self) -> set[str]:
-        found = {str(opened.getsockname()[0]).partition("%")[0] for opened in self._open()}
+    def addresses(self) -> set[str]:
+        """Return the addresses that they send from."""
+        found = {str(opened.getsockname()[0]).partition("%")[0] for opened in self.open()}
         return {address for address in found if not ip_address(address).is_unspecified}
 
-    def _open(self) -> Iterator[socket.socket]:
+    def open(self) -> Iterator[socket.socket]:
+        """Yield the UDP sockets, each as a duplicate that is closed afterwards."""
         for descriptor in self.descriptors:
             with socket.socket(fileno=os.dup(descriptor)) as opened:
                 if opened.family in _IP and opened.type == socket.SOCK_DGRAM:
@@ -86,7 +99,8 @@ def opened_sockets() -> Iterator[Sockets]:
     before = {inode for _, inode in _sockets()}
     found = Sockets()
     yield found
-    found.descriptors = [number for number, inode in _sockets() if inode not in before]
+    opened = {number: inode for number, inode in _sockets() if inode not in before}
+    found.add(Sockets(opened))
 
 
 def _sockets() -> Iterator[tuple[int, str]]:
@@ -120,7 +134,7 @@ def _attach(opened: socket.socket, program: bytes) -> None:
     opened.setsockopt(socket.SOL_SOCKET, _SO_ATTACH_FILTER, described)
 
 
-def _addresses() -> Iterator[tuple[str, int]]:
+def machine_addresses() -> Iterator[tuple[str, int]]:
     """Yield the addresses of this machine with the indices of their interfaces."""
     yield from _ipv4_addresses()
     with suppress(OSError):  # a kernel without IPv6
