@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+import pytest
+
 from tests.interop.namespace import Namespace, Running
 from tests.network.conftest import Machine
 
@@ -37,6 +39,22 @@ def test_an_interface_that_is_made_anew_is_used_again(machine: Machine) -> None:
     assert receiver.expect(ends_with("'eth0' is back and in use again"))
     publish(other, "0.2")
     assert receiver.expect(ends_with("0.2"))
+
+
+def test_a_network_that_is_down_is_a_few_lines(machine: Machine) -> None:
+    """The library alone writes one for every packet: three a second and more."""
+    vehicle, other = machine(), machine()
+    vehicle.link("eth0", VEHICLE, other, OTHER)
+    receiver = receiver_on(vehicle)
+    vehicle.run("ip", "link", "set", "eth0", "down")
+    assert receiver.expect(ends_with("'eth0' is down; waiting for it"))
+    with pytest.raises(AssertionError) as lines:
+        receiver.expect(lambda line: False, 3.0)
+    assert str(lines.value).count("ddsi_udp_conn_write") <= 1
+    vehicle.run("ip", "link", "set", "eth0", "up")
+    assert receiver.expect(ends_with("'eth0' is back and in use again"))
+    publish(other, "0.4")
+    assert receiver.expect(ends_with("0.4"))
 
 
 def test_an_address_that_goes_and_comes_back_is_told_and_one_that_changed_too(

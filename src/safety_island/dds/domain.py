@@ -18,7 +18,7 @@ from safety_island.dds.errors import DdsError
 from safety_island.dds.follow import InterfaceSockets, follow
 from safety_island.dds.network import unknown_peer
 from safety_island.dds.receive_filter import opened_sockets
-from safety_island.dds.stderr import captured_stderr
+from safety_island.dds.stderr import captured_log
 from safety_island.dds.trial import why_fatal
 from safety_island.dds.user_xml import URI, check_user_xml, user_xml
 from safety_island.errors import ConfigurationError
@@ -111,7 +111,7 @@ def _look_at_interfaces() -> None:
 def _start(domain_id: int, xml: str) -> tuple[Domain, InterfaceSockets]:
     """Start the library's domain, and close its sockets to all interfaces but those it uses."""
     try:
-        with opened_sockets() as opened, captured_stderr() as said:
+        with opened_sockets() as opened, captured_log(bool(_TRACING.search(xml))) as said:
             domain = Domain(domain_id, xml)
     except DDSException as problem:
         raise ConfigurationError(_explain(domain_id, said.cause or str(problem))) from None
@@ -135,4 +135,6 @@ def _explain(domain_id: int, cause: str) -> str:
     return f"DDS domain {domain_id} cannot start: {cause}{hint}"
 
 
+_TRACING = re.compile(r"<tr", re.IGNORECASE)
+"""The library's trace is on: it is for the user to read as it is."""
 _BAD_PEER = re.compile(r"add_peer_address: (.*?): (?:unknown|not a valid) address")
