@@ -18,13 +18,24 @@ _MAX_DATAGRAM = 60_000
 
 
 class Forger:
-    """Sends data in the name of the writer ``guid`` to the participants of a domain."""
+    """Sends data in the name of the writer ``guid`` to the participants of a domain on a host.
 
-    def __init__(self, domain_id: int, guid: bytes, next_number: int) -> None:
+    ``ports`` are those of the participants; without, the first that RTPS defines for the domain.
+    """
+
+    def __init__(
+        self,
+        domain_id: int,
+        guid: bytes,
+        next_number: int,
+        host: str = "127.0.0.1",
+        ports: list[int] | None = None,
+    ) -> None:
         self._prefix, self._writer = guid[:12], guid[12:]
         self._number = next_number
+        self._host = host
         base = _PORT_BASE + _DOMAIN_GAIN * domain_id + _UNICAST_DATA
-        self._ports = [base + _PARTICIPANT_GAIN * index for index in range(4)]
+        self._ports = ports or [base + _PARTICIPANT_GAIN * index for index in range(4)]
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
 
     def send(self, payload: bytes, *, counts: bool = True) -> None:
@@ -49,7 +60,7 @@ class Forger:
         header = b"RTPS\x02\x05\x01\x10" + self._prefix
         message = header + struct.pack("<BBH", kind, flags, 0) + body
         for port in self._ports:
-            self._socket.sendto(message, ("127.0.0.1", port))
+            self._socket.sendto(message, (self._host, port))
 
     def close(self) -> None:
         """Close the socket."""

@@ -8,8 +8,14 @@ from typing import Any
 
 import pytest
 
-from safety_island.dds import network
-from safety_island.dds.config import MAX_DOMAIN_ID, URI, DdsConfig, max_participant_index
+from safety_island.dds import domain, network
+from safety_island.dds.config import (
+    MAX_DOMAIN_ID,
+    URI,
+    DdsConfig,
+    defaults_xml,
+    max_participant_index,
+)
 from safety_island.dds.participant import Participant
 from safety_island.errors import ConfigurationError
 from tests.dds.conftest import LOOPBACK
@@ -25,18 +31,22 @@ def text(config: DdsConfig, path: str, domain_id: int = 2) -> str | None:
     return domain_xml(config, domain_id).findtext(path)
 
 
-def test_loopback_needs_no_multicast() -> None:
+def test_loopback_announces_by_multicast_and_to_the_usual_ports() -> None:
+    """Peers of other versions and settings use the one or the other there."""
     found = domain_xml(LOOPBACK)
     (interface,) = found.iter("NetworkInterface")
     assert interface.attrib == {"name": "lo"}
-    assert found.findtext("General/AllowMulticast") == "false"
+    assert found.findtext("General/AllowMulticast") == "spdp"
     assert found.findtext("Discovery/ParticipantIndex") == "auto"
+    (peers,) = found.iter("Peers")
+    assert peers.attrib == {"AddLocalhost": "true"}
 
 
 def test_interface_lo_is_loopback_whatever_the_multicast_mode() -> None:
-    config = DdsConfig(interface="lo", multicast="full")
-    assert text(config, "General/AllowMulticast") == "false"
-    assert text(config, "Discovery/ParticipantIndex") == "auto"
+    for multicast, allowed in (("full", "spdp"), ("off", "false")):
+        config = DdsConfig(interface="lo", multicast=multicast)  # type: ignore[arg-type]
+        assert text(config, "General/AllowMulticast") == allowed
+        assert text(config, "Discovery/ParticipantIndex") == "auto"
 
 
 def test_a_network_uses_multicast_for_discovery_only() -> None:
@@ -70,6 +80,58 @@ def test_kilted_is_matched_and_deaths_are_noticed_by_default() -> None:
     assert text(DdsConfig(), "Discovery/SPDPInterval") == "333ms"
 
 
+def test_peers_of_old_versions_see_what_is_closed_and_whose_it_is() -> None:
+    for xml in (DdsConfig().xml(2), defaults_xml()):
+        found = ElementTree.fromstring(xml)
+        assert found.findtext("Domain/Internal/GenerateKeyhash") == "true"
+        assert found.findtext("Domain/Compatibility/ExplicitlyPublishQosSetToDefault") == "true"
+
+
+def test_a_list_of_peers_is_taken_apart() -> None:
+    config = DdsConfig(peers=("192.0.2.7, udp/192.0.2.8:7410", "lead.example"))
+    assert config.peers == ("192.0.2.7", "udp/192.0.2.8:7410", "lead.example")
+    assert text(config, "General/Transport") is None
+
+
+def test_peers_of_ipv6_use_udp_over_ipv6() -> None:
+    config = DdsConfig(interface="eth0", peers=("fc94::3", "[fc94::4]:7410"))
+    assert text(config, "General/Transport") == "udp6"
+    with pytest.raises(ConfigurationError, match="expected all of IPv6 or all of IPv4"):
+        DdsConfig(peers=("fc94::3", "192.0.2.7")).xml(2)
+
+
+def test_a_tag_may_be_that_of_one_domain() -> None:
+    config = DdsConfig(domain_tags=((2, "vehicle-7"),))
+    assert text(config, "Discovery/Tag", 1) is None
+    assert text(config, "Discovery/Tag", 2) == "vehicle-7"
+
+
+@pytest.mark.parametrize("tag", ["a" * 256, "a\nb", "l\u00f6"])
+def test_a_tag_that_cannot_be_sent_is_refused(tag: str) -> None:
+    with pytest.raises(ConfigurationError, match="expected at most 255 printable ASCII"):
+        DdsConfig(domain_tag=tag)
+    with pytest.raises(ConfigurationError, match="expected at most 255 printable ASCII"):
+        DdsConfig(domain_tags=((2, tag),))
+
+
+def test_an_interface_without_multicast_is_told_when_no_peer_is_named(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(network, "flags", {"wg0": 0x91, "eth0": 0x1003, "lo": 0x9}.get)
+    said = DdsConfig(interface="wg0").warning()
+    assert said is not None and "'wg0' carries no multicast" in said and "--peer ADDRESS" in said
+    assert DdsConfig(interface="wg0", peers=("10.0.0.2",)).warning() is None
+    assert DdsConfig(interface="eth0").warning() is None
+    assert LOOPBACK.warning() is None
+    assert text(DdsConfig(interface="wg0"), "Discovery/ParticipantIndex") == "auto"
+    assert text(DdsConfig(interface="eth0"), "Discovery/ParticipantIndex") == "none"
+
+
+def test_the_kernel_tells_the_flags_of_an_interface() -> None:
+    assert network.flags("lo") & 0x9 == 0x9
+    assert network.flags("nowhere9") == 0x1001
+
+
 def test_the_other_settings() -> None:
     config = DdsConfig(receive_buffer=2**20, domain_tag="a<b&c", loss=0.2, max_message_size=9000)
     (buffer,) = domain_xml(config).iter("SocketReceiveBufferSize")
@@ -77,7 +139,8 @@ def test_the_other_settings() -> None:
     assert text(config, "Discovery/Tag") == "a<b&c"
     assert text(config, "Internal/Test/XmitLossiness") == "200"
     assert text(config, "General/FragmentSize") == "8944B"
-    assert domain_xml(DdsConfig()).find("Internal") is None
+    (internal,) = domain_xml(DdsConfig()).iter("Internal")
+    assert [element.tag for element in internal] == ["GenerateKeyhash"]
 
 
 def test_ports_of_every_participant_index_fit_into_16_bits() -> None:
@@ -136,12 +199,8 @@ def test_a_wrong_interface_is_told_with_those_that_exist(
     assert "did you mean tap1?" in said
 
 
-def test_an_interface_that_is_down_is_told(
-    domain_id: int, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    (tmp_path / "lo").mkdir()
-    (tmp_path / "lo" / "flags").write_text("0x8\n")
-    monkeypatch.setattr(network, "_SYSFS", tmp_path)
+def test_an_interface_that_is_down_is_told(domain_id: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(network, "flags", {"lo": 0x8}.get)
     assert "network interface 'lo' is down; run: ip link set lo up" in refusal(domain_id)
 
 
@@ -150,6 +209,23 @@ def test_a_peer_that_does_not_resolve_is_told(peer: str, domain_id: int) -> None
     """The library would end the process without a word in Python."""
     said = refusal(domain_id, DdsConfig(loopback_only=True, peers=(peer,)))
     assert f"DDS peer {peer!r} cannot be resolved" in said
+
+
+@pytest.mark.parametrize("peer", ["192.0.2.7", "udp/192.0.2.7:7410", "fc94::3", "[fc94::3]:7410"])
+def test_a_peer_elsewhere_is_no_use_on_loopback(peer: str, domain_id: int) -> None:
+    said = refusal(domain_id, DdsConfig(interface="lo", peers=(peer,)))
+    assert f"DDS peer {peer!r} is another machine" in said and "--interface" in said
+
+
+@pytest.mark.parametrize("peer", ["localhost", "127.0.0.1", "udp/127.0.0.1:7411", "239.255.0.2"])
+def test_every_form_of_a_peer_that_the_library_takes_is_taken(peer: str, domain_id: int) -> None:
+    with Participant(domain_id, DdsConfig(loopback_only=True, peers=(peer, peer))) as own:
+        assert own.guid
+
+
+def test_a_peer_that_crashes_the_library_is_told(domain_id: int) -> None:
+    said = refusal(domain_id, DdsConfig(peers=("0.0.0.0",)))
+    assert f"DDS domain {domain_id} cannot start: the library ends with SIG" in said
 
 
 def test_a_receive_buffer_beyond_the_kernel_s_limit_is_told(domain_id: int) -> None:
@@ -180,9 +256,45 @@ def test_the_user_s_own_xml_wins(
     assert "tap77" in refusal(domain_id, wrong)
 
 
+SHORT = '<Gen><Interfaces><Netw n="lo"/></><Al>spdp,asm</></>'
+
+
+@pytest.mark.parametrize(
+    "uri",
+    [
+        SHORT,
+        f"{SHORT},<Disc><LeaseD>2s</></>",
+        "<Disc><Peers><Peer addr='udp/127.0.0.1:7410,localhost'/></></>",
+        "<CycloneDDS><!-- </> --><Domain Id='any'><Gen><Interfaces><N n='lo'/></></></></>",
+    ],
+)
+def test_the_short_form_of_the_xml_is_taken(
+    uri: str, domain_id: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(URI, uri)
+    with Participant(domain_id) as own:
+        assert own.guid
+
+
+def test_a_tag_and_peers_of_the_command_line_hold_over_the_user_s_xml(
+    domain_id: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(URI, f"{GOOD_XML},<Disc><Tag>other</></>")
+    tagged = DdsConfig(domain_tag="vehicle-7", peers=("127.0.0.1",))
+    assert domain._effective_xml(domain_id, tagged).endswith(
+        '<Discovery><Tag>vehicle-7</Tag><Peers><Peer Address="127.0.0.1" PruneDelay="inf"/></Peers>'
+        "</Discovery></Domain></CycloneDDS>"
+    )
+    with Participant(domain_id, tagged) as own:
+        assert own.guid
+
+
 @pytest.mark.parametrize(
     ("xml", "said"),
     [
+        (SHORT + SHORT, "not XML: junk after document element"),
+        (SHORT.removesuffix("</>"), f"{URI}:1:62: not XML: no element found"),
+        ("<Gen><Al>perhaps</></>", "'perhaps' in 'perhaps' undefined"),
         (GOOD_XML.replace("General>", "Generale>"), "Generale: unknown element"),
         (GOOD_XML.replace('"lo"', '"tap0"'), "tap0: does not match an available interface"),
         (GOOD_XML.replace("false", "perhaps"), "'perhaps' in 'perhaps' undefined"),

@@ -37,10 +37,14 @@ def reason_against() -> str | None:
 
 
 class Namespace:
-    """Runs processes that see each other and nothing else; ends them when it is closed."""
+    """Runs processes that see each other and nothing else; ends them when it is closed.
 
-    def __init__(self) -> None:
-        command = [*_UNSHARE, sys.executable, "-c", _LOOPBACK_UP]
+    One that is made ``beside`` another belongs to the same user, so that links can join them.
+    """
+
+    def __init__(self, beside: Namespace | None = None) -> None:
+        unshare = _UNSHARE if beside is None else [*beside._enter(), "unshare", "--net"]
+        command = [*unshare, sys.executable, "-c", _LOOPBACK_UP]
         self._holder = subprocess.Popen(
             command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
         )
@@ -52,15 +56,35 @@ class Namespace:
         self, command: Sequence[str], environment: Mapping[str, str] | None = None
     ) -> Running:
         """Start a process inside; its standard output can be waited for line by line."""
-        enter = ["nsenter", "--target", str(self._holder.pid), *_ENTER, *command]
-        running = Running(enter, {**os.environ, **(environment or {})})
+        running = Running([*self._enter(), *command], {**os.environ, **(environment or {})})
         self._running.append(running)
         return running
 
-    def island(self, module: str, *arguments: str) -> Running:
+    def island(
+        self, module: str, *arguments: str, environment: Mapping[str, str] | None = None
+    ) -> Running:
         """Start a Python module of this repository inside."""
         paths = {"PYTHONPATH": f"{ROOT / 'src'}{os.pathsep}{ROOT}"}
-        return self.start([sys.executable, "-m", module, *arguments], paths)
+        command = [sys.executable, "-m", module, *arguments]
+        return self.start(command, {**(environment or {}), **paths})
+
+    def run(self, *command: str) -> None:
+        """Run a command inside to its end; it must succeed."""
+        done = subprocess.run(
+            [*self._enter(), *command], capture_output=True, text=True, check=False
+        )
+        assert done.returncode == 0, f"{command}: {done.stderr}"
+
+    def link(self, name: str, address: str, other: Namespace, its_address: str) -> None:
+        """Join two namespaces by a cable: an interface ``name`` in each, with these addresses."""
+        peer = ["peer", "name", name, "netns", str(other._holder.pid)]
+        self.run("ip", "link", "add", name, "type", "veth", *peer)
+        for namespace, its in ((self, address), (other, its_address)):
+            namespace.run("ip", "address", "add", f"{its}/24", "dev", name)
+            namespace.run("ip", "link", "set", name, "up")
+
+    def _enter(self) -> list[str]:
+        return ["nsenter", "--target", str(self._holder.pid), *_ENTER]
 
     def close(self) -> None:
         """End every process and the namespace."""
@@ -101,6 +125,12 @@ class Running:
             if found := wanted(line):
                 return found
             seen.append(line)
+
+    def tell(self, line: str) -> None:
+        """Write a line to its standard input."""
+        assert self.process.stdin is not None
+        self.process.stdin.write(f"{line}\n")
+        self.process.stdin.flush()
 
     def close(self) -> None:
         """Ask the process to end, and end it when it does not."""

@@ -76,6 +76,23 @@ def test_ros_sees_the_island_as_a_node(namespace: Namespace, ros_node: RosNode) 
     ros.expect(event("graph", lambda found: found["nodes"] == ["ros_peer"]))
 
 
+def test_ros_sees_that_a_publisher_is_closed_while_its_node_lives(
+    namespace: Namespace, ros_node: RosNode
+) -> None:
+    ros = ros_node(DOMAIN)
+    island = namespace.island("tests.network.peer", "come-and-go", str(DOMAIN), "lo")
+
+    def publishers(count: int) -> Callable[[Any], bool]:
+        return lambda graph: (
+            "safety_island" in graph["nodes"]
+            and len(graph["topics"]["/echo/odometry"]["publishers"]) == count
+        )
+
+    ros.expect(event("graph", publishers(1)))
+    island.tell("close")
+    ros.expect(event("graph", publishers(0)))
+
+
 def test_ros_passes_over_what_was_taken_back(namespace: Namespace, ros_node: RosNode) -> None:
     """It hears each state once, and nothing in place of those that were taken back."""
     ros = ros_node(DOMAIN)

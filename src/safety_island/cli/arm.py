@@ -32,7 +32,7 @@ island is armed now, or was.
         ("island arm --interface eth0 --domain 3", "another one"),
     )
     options.add_domain(parser, 2, "the safety island")
-    options.add_interface(parser)
+    options.add_network(parser)
     options.add_timeout(parser, "the answer")
 
 

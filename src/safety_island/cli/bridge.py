@@ -61,7 +61,7 @@ bridge does not forward what it published itself.
         choices=tuple(SWITCH),
         help="close a route again when what it waited for is gone (default: false)",
     )
-    options.add_interface(parser)
+    options.add_network(parser)
     options.add_realtime(parser)
     options.add_duration(parser, 0.0)
     options.add_json(parser, "counts, once a second,")
@@ -84,7 +84,6 @@ def execute(arguments: argparse.Namespace) -> int:
         from safety_island.bridge import BridgeOptions, run
         from safety_island.bridge.link import WaitFor
         from safety_island.cli.bridge_service import BridgeService
-        from safety_island.dds.config import DdsConfig
         from safety_island.platform import load
 
         chosen = BridgeOptions(
@@ -96,7 +95,7 @@ def execute(arguments: argparse.Namespace) -> int:
                 subscription=SWITCH[arguments.wait_for_subscription],
                 auto_remove=SWITCH[arguments.auto_remove],
             ),
-            dds=DdsConfig(interface=arguments.interface),
+            dds=options.dds_config(arguments),
             duration_s=arguments.duration,
         )
         stop = BridgeService(arguments.realtime, arguments.cpu)

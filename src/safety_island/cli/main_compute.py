@@ -42,7 +42,7 @@ engaged when commands come. When they stop coming the vehicle brakes, as Autowar
         help="drive about this long: as many laps as fit, or a part of the course",
     )
     parser.add_argument("--no-engage", action="store_true", help="leave the operation mode at STOP")
-    options.add_interface(parser)
+    options.add_network(parser)
     options.add_duration(parser, 0.0)
     options.add_json(parser, "status and summary")
 
@@ -50,7 +50,6 @@ engaged when commands come. When they stop coming the vehicle brakes, as Autowar
 def execute(arguments: argparse.Namespace) -> int:
     """Drive until the course is driven, time is up, or told to stop."""
     with StopAtOnce() as start:
-        from safety_island.dds.config import DdsConfig
         from safety_island.platform import load
         from safety_island.sim.main_compute import MainComputeOptions, run
 
@@ -61,7 +60,7 @@ def execute(arguments: argparse.Namespace) -> int:
             engage=not arguments.no_engage,
             duration_s=arguments.duration,
             within_s=arguments.within,
-            dds=DdsConfig(interface=arguments.interface),
+            dds=options.dds_config(arguments),
         )
         platform, stop = load("posix"), StopFlag()
         report = JsonLines(tell_lost).write if arguments.json else None

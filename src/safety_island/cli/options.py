@@ -4,9 +4,21 @@ from __future__ import annotations
 
 import argparse
 from math import isfinite
+from typing import TYPE_CHECKING, TypedDict
+
+if TYPE_CHECKING:
+    from safety_island.dds.config import DdsConfig
 
 MAX_DOMAIN = 232
 """The highest DDS domain id whose UDP ports exist."""
+
+
+class PeersAndTags(TypedDict):
+    """Settings of ``DdsConfig`` that hold with a user's own XML too."""
+
+    peers: tuple[str, ...]
+    domain_tag: str
+    domain_tags: tuple[tuple[int, str], ...]
 
 
 def domain_id(text: str) -> int:
@@ -65,6 +77,20 @@ def add_domain(parser: argparse.ArgumentParser, default: int, whose: str) -> Non
     )
 
 
+def domain_tag(text: str) -> tuple[int | None, str]:
+    """Read a domain tag, ``TAG`` or ``ID=TAG`` for one domain."""
+    before, separator, tag = text.partition("=")
+    if not separator:
+        return None, text
+    return domain_id(before), tag
+
+
+def add_network(parser: argparse.ArgumentParser) -> None:
+    """Add what says how DDS uses the network; ``dds_config`` reads it."""
+    add_interface(parser)
+    add_peers_and_tag(parser)
+
+
 def add_interface(parser: argparse.ArgumentParser) -> None:
     """Add ``--interface``."""
     parser.add_argument(
@@ -73,6 +99,44 @@ def add_interface(parser: argparse.ArgumentParser) -> None:
         metavar="NAME",
         help="network interface, for example eth0 or tap0 (default: lo, this machine only; "
         "CYCLONEDDS_URI, when set, configures DDS instead)",
+    )
+
+
+def add_peers_and_tag(parser: argparse.ArgumentParser) -> None:
+    """Add ``--peer`` and ``--domain-tag``."""
+    parser.add_argument(
+        "--peer",
+        action="append",
+        default=[],
+        metavar="ADDRESS",
+        help="another machine to find without multicast, by address or name, with an optional "
+        ":port; may be repeated (it needs --interface as well)",
+    )
+    parser.add_argument(
+        "--domain-tag",
+        action="append",
+        type=domain_tag,
+        default=[],
+        metavar="[ID=]TAG",
+        help="keep apart from participants of the same domain with another tag, or none; ID=TAG "
+        "for one domain alone",
+    )
+
+
+def dds_config(arguments: argparse.Namespace) -> DdsConfig:
+    """Return how DDS uses the network, as the options of ``add_network`` say."""
+    from safety_island.dds.config import DdsConfig
+
+    return DdsConfig(interface=arguments.interface, **peers_and_tags(arguments))
+
+
+def peers_and_tags(arguments: argparse.Namespace) -> PeersAndTags:
+    """Return the settings of ``add_peers_and_tag``; the last of several tags counts."""
+    tags = dict(arguments.domain_tag)
+    return PeersAndTags(
+        peers=tuple(arguments.peer),
+        domain_tag=tags.pop(None, ""),
+        domain_tags=tuple(tags.items()),
     )
 
 

@@ -64,6 +64,7 @@ def _add_network(parser: argparse.ArgumentParser) -> None:
         "configuration; posix: lo, this machine only; CYCLONEDDS_URI, when set, configures DDS "
         "instead)",
     )
+    options.add_peers_and_tag(parser)
     parser.add_argument(
         "--sntp",
         metavar="SERVER",

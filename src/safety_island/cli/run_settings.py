@@ -13,6 +13,7 @@ from pathlib import Path
 from safety_island.build.configuration import InterfaceConfiguration, RunConfiguration
 from safety_island.can.mode import TARGET_OUTPUT, OutputMode
 from safety_island.can.spec import BusSpec, parse_spec
+from safety_island.cli.options import peers_and_tags
 from safety_island.dds.config import URI, DdsConfig, user_xml
 from safety_island.errors import ConfigurationError
 from safety_island.platform import LogConfig, LogLevel
@@ -54,7 +55,7 @@ def run_settings(arguments: argparse.Namespace, config: RunConfiguration) -> Run
     return RunSettings(
         target=config.target,
         domain_id=config.dds_domain_id if arguments.domain is None else arguments.domain,
-        dds=DdsConfig(interface=interface, log_level=config.dds_log_level),
+        dds=DdsConfig(interface, log_level=config.dds_log_level, **peers_and_tags(arguments)),
         interfaces=() if is_virtual else tuple(_configured(config, interface)),
         address_limit_s=config.address_limit_s,
         sntp_server=None if is_virtual else arguments.sntp or config.sntp_server,

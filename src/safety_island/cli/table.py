@@ -49,6 +49,7 @@ COMMANDS = (
     Command("bench", "bench", "Measure the tick, or the way from odometry to command.", _ISLAND),
     Command("params", "params", "Show or check controller parameters."),
     Command("can", "can", "Watch, send and describe the CAN command frames."),
+    Command("env", "env", "Print what other DDS programs need to meet the island."),
     Command("config", "config", "Show the configuration of a target."),
     Command("menuconfig", "menuconfig", "Choose the configuration of a target in a menu."),
     Command(

@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from difflib import get_close_matches
 from typing import Any, Literal
 from xml.sax.saxutils import quoteattr
 
-from safety_island.dds.network import check_interface, check_peer
+from safety_island.dds.network import (
+    LOOPBACK,
+    check_interface,
+    has_multicast,
+    is_elsewhere,
+    unknown_peer,
+)
+from safety_island.dds.user_xml import URI, user_xml
 from safety_island.errors import ConfigurationError
 
 MAX_DOMAIN_ID = 232
 """The highest domain id whose ports fit into 16 bits (RTPS 2.5, section 9.6.2.3)."""
-LOOPBACK = "lo"
-URI = "CYCLONEDDS_URI"
 
 Multicast = Literal["spdp", "off", "full"]
 _ALLOW_MULTICAST = {"spdp": "spdp", "off": "false", "full": "true"}
@@ -23,6 +27,8 @@ _MESSAGE_OVERHEAD = 56
 """Bytes of an RTPS message around one fragment: 1400 leaves the usual 1344."""
 _MESSAGE_SIZES = (576, 65500)
 _ANNOUNCEMENTS_PER_LEASE = 3
+_LONGEST_TAG = 255
+"""RTPS 2.5, section 9.6.2.2.1: a string of less than 256 characters."""
 _VERBOSITIES = ("none", "config", "finest")
 
 
@@ -31,13 +37,14 @@ class DdsConfig:
     """How DDS uses the network.
 
     ``interface`` is a network interface by name (None: the library chooses); ``loopback_only``
-    stays on this machine and needs no multicast; ``peers`` are hosts to announce to directly;
-    ``multicast`` is ``spdp`` (discovery only), ``off`` or ``full``; ``max_message_size`` [B] must
-    fit the network's MTU; ``receive_buffer`` [B] is the least size of the socket's buffer;
-    ``lease_s`` [s] is the time after which others miss this process; ``domain_tag`` keeps apart
-    what shares a domain id; ``loss`` is the share of sent packets to drop (0 to 1, for tests);
-    ``log_level`` is what the library tells on standard error (0 nothing, 1 warnings and its
-    configuration, 2 everything).
+    stays on this machine; ``peers`` are hosts to announce to directly, as the library takes them
+    (address or name, with an optional port); ``multicast`` is ``spdp`` (discovery only), ``off`` or
+    ``full``; ``max_message_size`` [B] must fit the network's MTU;
+    ``receive_buffer`` [B] is the least size of the socket's buffer; ``lease_s`` [s] is the time
+    after which others miss this process; ``domain_tag`` keeps apart what shares a domain id, and
+    ``domain_tags`` are those of single domains, in its place; ``loss`` is the share of sent packets
+    to drop (0 to 1, for tests); ``log_level`` is what the library tells on standard error (0
+    nothing, 1 warnings and its configuration, 2 everything).
     ConfigurationError for every value that cannot work.
     """
 
@@ -49,6 +56,7 @@ class DdsConfig:
     receive_buffer: int | None = None
     lease_s: float = 1.0
     domain_tag: str = ""
+    domain_tags: tuple[tuple[int, str], ...] = ()
     loss: float = 0.0
     log_level: int = 0
 
@@ -60,6 +68,9 @@ class DdsConfig:
         _range("log_level", self.log_level, 0, len(_VERBOSITIES) - 1)
         if self.receive_buffer is not None:
             _range("receive_buffer", self.receive_buffer, 4096, 2**30, unit="bytes")
+        for tag in (self.domain_tag, *(tag for _, tag in self.domain_tags)):
+            _check_tag(tag)
+        object.__setattr__(self, "peers", _split(self.peers))
         if self.multicast not in _ALLOW_MULTICAST:
             allowed = ", ".join(_ALLOW_MULTICAST)
             raise ConfigurationError(f"multicast is {self.multicast!r}, expected one of {allowed}")
@@ -83,16 +94,31 @@ class DdsConfig:
         return cls(**values)
 
     def check_network(self) -> None:
-        """Raise ConfigurationError for an interface or a peer that this machine does not know."""
+        """Raise ConfigurationError for an interface that this machine does not know."""
         if self._interface:
             check_interface(self._interface)
-        for peer in self.peers:
-            check_peer(peer)
+        if "" in self.peers:
+            raise ConfigurationError(unknown_peer(""))
+        if self._interface == LOOPBACK and (peer := next(filter(is_elsewhere, self.peers), None)):
+            raise ConfigurationError(
+                f"DDS peer {peer!r} is another machine, and interface 'lo' reaches this one only;"
+                " name the interface that leads there with --interface"
+            )
+
+    def warning(self) -> str | None:
+        """Say in one line why nobody may be found; None when there is no such reason."""
+        if self._interface is None or self.peers or has_multicast(self._interface):
+            return None
+        return (
+            f"network interface {self._interface!r} carries no multicast, so discovery finds"
+            " nobody there; name the other machines with --peer ADDRESS, on both sides"
+        )
 
     def xml(self, domain_id: int) -> str:
         """Return the CycloneDDS configuration of one domain."""
         check_domain_id(domain_id)
-        general = self._interfaces() + _element("AllowMulticast", self._allow_multicast())
+        general = self._interfaces() + self._transport()
+        general += _element("AllowMulticast", self._allow_multicast())
         general += _element("MaxMessageSize", f"{self.max_message_size}B")
         general += _element("FragmentSize", f"{self.max_message_size - _MESSAGE_OVERHEAD}B")
         domain = _element("General", general) + _element("Discovery", self._discovery(domain_id))
@@ -108,21 +134,76 @@ class DdsConfig:
             return ""
         return f"<Interfaces><NetworkInterface name={quoteattr(self._interface)}/></Interfaces>"
 
+    def _transport(self) -> str:
+        """Return UDP over IPv6 when that is what the peers have."""
+        return _element("Transport", "udp6" if _all_ipv6(self.peers) else "")
+
     def _allow_multicast(self) -> str:
-        return "false" if self._interface == LOOPBACK else _ALLOW_MULTICAST[self.multicast]
+        """On loopback for discovery only, at most: there is nothing to be gained for data."""
+        allowed = _ALLOW_MULTICAST[self.multicast]
+        return "spdp" if self._interface == LOOPBACK and allowed == "true" else allowed
 
     def _discovery(self, domain_id: int) -> str:
-        """Unicast discovery needs well-known ports, hence a participant index; multicast none."""
-        unicast = bool(self.peers) or self._allow_multicast() == "false"
+        """Unicast discovery needs well-known ports, hence a participant index; multicast none.
+
+        On loopback both: peers there use the one or the other, by their version and settings.
+        """
+        on_loopback = self._interface == LOOPBACK
+        unicast = on_loopback or bool(self.peers) or not self._reaches_by_multicast()
         found = _element("ParticipantIndex", "auto" if unicast else "none")
         found += _element("MaxAutoParticipantIndex", str(max_participant_index(domain_id)))
+        if on_loopback:
+            found += f'<Peers AddLocalhost="true">{self._peers()}</Peers>'
+        else:
+            found += _element("Peers", self._peers())
+        return found + _lease(self.lease_s) + self._tag(domain_id)
+
+    def overlay_xml(self, domain_id: int) -> str:
+        """Return what is laid over a user's own XML: the settings that it was not to decide."""
+        found = self._tag(domain_id)
         if self.peers:
-            peers = [f'<Peer Address={quoteattr(p)} PruneDelay="inf"/>' for p in self.peers]
-            found += _element("Peers", "".join(peers))
-        return found + _lease(self.lease_s) + _element("Tag", _escape(self.domain_tag))
+            found += _element("Peers", self._peers())
+        return _document(_element("Discovery", found)) if found else ""
+
+    def peer_xml(self, domain_id: int) -> str:
+        """Return the CycloneDDS configuration of a program that is to meet this one.
+
+        In elements that CycloneDDS 0.10 knows as well.
+        """
+        check_domain_id(domain_id)
+        general = self._interfaces() + self._transport()
+        if self._interface == LOOPBACK:
+            general += _element("AllowMulticast", self._allow_multicast())
+            discovery = _element("ParticipantIndex", "auto") + _element(
+                "MaxAutoParticipantIndex", str(max_participant_index(domain_id))
+            )
+            peers = ("127.0.0.1", *self.peers)
+        else:
+            general += _element("MaxMessageSize", f"{self.max_message_size}B")
+            discovery = _element("ParticipantIndex", "auto" if self.peers else "")
+            peers = self.peers
+        found = "".join(f"<Peer Address={quoteattr(peer)}/>" for peer in peers)
+        discovery += _element("Peers", found) + self._tag(domain_id)
+        return _document(_element("General", general) + _element("Discovery", discovery))
+
+    def tag(self, domain_id: int) -> str:
+        """Return the tag of a domain, empty when it has none."""
+        return dict(self.domain_tags).get(domain_id, self.domain_tag)
+
+    def _tag(self, domain_id: int) -> str:
+        return _element("Tag", _escape(self.tag(domain_id)))
+
+    def _peers(self) -> str:
+        peers = (f'<Peer Address={quoteattr(p)} PruneDelay="inf"/>' for p in self.peers)
+        return "".join(peers)
+
+    def _reaches_by_multicast(self) -> bool:
+        if self._allow_multicast() == "false":
+            return False
+        return self._interface is None or has_multicast(self._interface)
 
     def _internal(self) -> str:
-        found = ""
+        found = _KEY_HASH
         if self.receive_buffer is not None:
             found += f'<SocketReceiveBufferSize min="{self.receive_buffer}B"/>'
         if self.loss:
@@ -143,15 +224,11 @@ def check_domain_id(domain_id: int) -> None:
         )
 
 
-def user_xml() -> str | None:
-    """Return the user's own configuration (``CYCLONEDDS_URI``), None when there is none."""
-    return os.environ.get(URI) or None
-
-
 def defaults_xml(lease_s: float = 1.0, log_level: int = 0) -> str:
     """Return what a user's own XML is laid over: what peers need to match, and what is told."""
     discovery = _element("Discovery", _lease(lease_s))
-    return _document(_COMPATIBILITY + discovery + _tracing(log_level))
+    internal = _element("Internal", _KEY_HASH)
+    return _document(_COMPATIBILITY + discovery + internal + _tracing(log_level))
 
 
 def _tracing(log_level: int) -> str:
@@ -186,7 +263,38 @@ def _range(name: str, value: float, low: float, high: float, unit: str = "") -> 
         raise ConfigurationError(f"{name} is {value:g}, expected {limits}")
 
 
-_COMPATIBILITY = _element("Compatibility", _element("IgnoreTypeInformation", "1.15"))
-"""Fast DDS 3 (ROS 2 Kilted) announces type information that the library cannot match with ours."""
+def _check_tag(tag: str) -> None:
+    if len(tag) > _LONGEST_TAG or not (tag.isascii() and (tag.isprintable() or not tag)):
+        raise ConfigurationError(
+            f"domain tag {tag!r}: expected at most {_LONGEST_TAG} printable ASCII characters"
+        )
 
-__all__ = ["DdsConfig", "check_domain_id", "check_interface", "defaults_xml", "user_xml"]
+
+def _split(peers: tuple[str, ...]) -> tuple[str, ...]:
+    """Return each peer of lists with commas."""
+    return tuple(peer.strip() for text in peers for peer in text.split(","))
+
+
+def _all_ipv6(peers: tuple[str, ...]) -> bool:
+    """Return whether the peers are IPv6 addresses. Raises ConfigurationError for a mixture."""
+    ipv6 = [peer for peer in peers if peer.count(":") > 1]
+    if ipv6 and len(ipv6) < len(peers):
+        other = next(peer for peer in peers if peer not in ipv6)
+        raise ConfigurationError(
+            f"DDS peers {ipv6[0]!r} and {other!r}: expected all of IPv6 or all of IPv4, since one"
+            " domain uses one of them"
+        )
+    return bool(ipv6)
+
+
+_COMPATIBILITY = _element(
+    "Compatibility",
+    _element("IgnoreTypeInformation", "1.15")
+    + _element("ExplicitlyPublishQosSetToDefault", "true"),
+)
+"""Fast DDS 3 (ROS 2 Kilted) announces type information that the library cannot match with ours, and
+knows history and depth of an endpoint only when they are sent, default or not."""
+_KEY_HASH = _element("GenerateKeyhash", "true")
+"""Without it Fast DDS and CycloneDDS 0.10 do not see that an endpoint is closed."""
+
+__all__ = ["URI", "DdsConfig", "check_domain_id", "check_interface", "defaults_xml", "user_xml"]

@@ -3,25 +3,31 @@
 from __future__ import annotations
 
 import re
+import sys
 import threading
-import xml.etree.ElementTree as ElementTree
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
-from pathlib import Path
 
 from cyclonedds.core import DDSException
 from cyclonedds.domain import Domain
 
 from safety_island.dds import binding
-from safety_island.dds.config import URI, DdsConfig, check_domain_id, defaults_xml, user_xml
-from safety_island.dds.network import check_peer
-from safety_island.dds.stderr import captured_stderr
+from safety_island.dds.config import DdsConfig, check_domain_id, defaults_xml
+from safety_island.dds.errors import DdsError
+from safety_island.dds.follow import InterfaceSockets, follow
+from safety_island.dds.network import unknown_peer
+from safety_island.dds.receive_filter import opened_sockets
+from safety_island.dds.stderr import captured_log
+from safety_island.dds.trial import why_fatal
+from safety_island.dds.user_xml import URI, check_user_xml, user_xml
 from safety_island.errors import ConfigurationError
-from safety_island.text_file import UnreadableError, read_text
 
 
 @dataclass
 class _Open:
     domain: Domain
+    sockets: InterfaceSockets
     xml: str
     users: int
 
@@ -41,13 +47,26 @@ def open_domain(domain_id: int, config: DdsConfig) -> None:
     with _lock:
         found = _open.get(domain_id)
         if found is None:
-            _open[domain_id] = _Open(_start(domain_id, xml), xml, 1)
+            _open[domain_id] = _Open(*_start(domain_id, xml), xml, 1)
+            follow(_look_at_interfaces)
         elif found.xml != xml:
             raise ConfigurationError(
                 f"domain {domain_id} is already open in this process with another configuration"
             )
         else:
             found.users += 1
+
+
+@contextmanager
+def closed_to_other_interfaces(domain_id: int) -> Iterator[None]:
+    """Close what sockets are opened inside as the domain's own are (one for each participant).
+
+    Raises DdsError when they cannot be closed.
+    """
+    with _lock:
+        with opened_sockets() as opened:
+            yield
+        _open[domain_id].sockets.add(opened)
 
 
 def close_domain(domain_id: int) -> None:
@@ -61,61 +80,61 @@ def close_domain(domain_id: int) -> None:
 
 
 def _effective_xml(domain_id: int, config: DdsConfig) -> str:
+    """Return what the library gets: our settings, or the user's own laid over our defaults."""
     uri = user_xml()
-    if uri is None:
+    if uri is not None:
+        check_user_xml(uri)
+        over = config.overlay_xml(domain_id)
+        xml = f"{defaults_xml(config.lease_s, config.log_level)},{uri},{over}"
+    else:
         config.check_network()
-        return config.xml(domain_id)
-    for part in _parts(uri):
-        _check_user_xml(part)
-    return f"{defaults_xml(config.lease_s, config.log_level)},{uri}"
+        xml = config.xml(domain_id)
+        if warning := config.warning():
+            print(f"island: warning: {warning}", file=sys.stderr, flush=True)
+    if (uri or config.peers) and (fatal := why_fatal(domain_id, xml)):
+        raise ConfigurationError(_explain(domain_id, fatal))
+    return xml
 
 
-def _parts(uri: str) -> list[str]:
-    """Split a configuration URI at its commas, those inside XML left alone."""
-    if not uri.isascii():
-        raise ConfigurationError(f"{URI} holds characters outside ASCII: {uri!r}")
-    found: list[str] = []
-    for part in re.split(r"(?<=>)\s*,\s*", uri):
-        found += [part] if part.lstrip().startswith("<") else part.split(",")
-    return [part.strip() for part in found if part.strip()]
+def _look_at_interfaces() -> None:
+    """Follow the interfaces of all domains after a change, and say what changed."""
+    with _lock:
+        for domain_id, found in _open.items():
+            try:
+                lines = list(found.sockets.update())
+            except DdsError as problem:
+                lines = [str(problem)]
+            for line in lines:
+                print(f"island: DDS domain {domain_id}: {line}", file=sys.stderr, flush=True)
 
 
-def _check_user_xml(part: str) -> None:
-    """Refuse what the library would pass over (broken XML) or die of (peers without address)."""
-    where = URI
-    text = part
-    if not part.startswith("<"):
-        where = part.removeprefix("file://")
-        try:
-            text = read_text(Path(where))
-        except UnreadableError as why:
-            shown = where if where.isprintable() else repr(where)
-            raise ConfigurationError(f"{URI}: cannot read {shown}: {why}") from None
+def _start(domain_id: int, xml: str) -> tuple[Domain, InterfaceSockets]:
+    """Start the library's domain, and close its sockets to all interfaces but those it uses."""
     try:
-        root = ElementTree.fromstring(text)
-    except ElementTree.ParseError as problem:
-        line, column = problem.position
-        what = str(problem).partition(":")[0]
-        raise ConfigurationError(f"{where}:{line}:{column + 1}: not XML: {what}") from None
-    for element in root.iter():
-        if element.tag.rpartition("}")[2].lower() == "peer":
-            check_peer(element.get("Address") or element.get("address") or "")
-
-
-def _start(domain_id: int, xml: str) -> Domain:
-    try:
-        with captured_stderr() as said:
-            return Domain(domain_id, xml)
+        with opened_sockets() as opened, captured_log(bool(_TRACING.search(xml))) as said:
+            domain = Domain(domain_id, xml)
     except DDSException as problem:
         raise ConfigurationError(_explain(domain_id, said.cause or str(problem))) from None
+    try:
+        return domain, InterfaceSockets(opened)
+    except DdsError:
+        binding.delete(domain)
+        raise
 
 
 def _explain(domain_id: int, cause: str) -> str:
+    if peer := _BAD_PEER.search(cause):
+        return unknown_peer(peer[1])
     hints = {
         "receive buffer": "allow more with: sysctl -w net.core.rmem_max=BYTES",
-        "available interface": "choose an interface that exists, is up and has an IPv4 address",
+        "available interface": "choose an interface that exists, is up and has an address",
         "participant index": "too many participants of this domain run on this machine",
         "unknown element": f"correct the XML in {URI}",
     }
     hint = next((f"; {text}" for word, text in hints.items() if word in cause), "")
     return f"DDS domain {domain_id} cannot start: {cause}{hint}"
+
+
+_TRACING = re.compile(r"<tr", re.IGNORECASE)
+"""The library's trace is on: it is for the user to read as it is."""
+_BAD_PEER = re.compile(r"add_peer_address: (.*?): (?:unknown|not a valid) address")

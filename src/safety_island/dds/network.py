@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import fcntl
 import socket
+import struct
+from contextlib import suppress
 from difflib import get_close_matches
-from pathlib import Path
+from ipaddress import ip_address
 
 from safety_island.errors import ConfigurationError
 
-_SYSFS = Path("/sys/class/net")
+LOOPBACK = "lo"
+_SIOCGIFFLAGS = 0x8913
 _UP = 0x1
+_MULTICAST = 0x1000
 
 
 def interfaces() -> list[str]:
@@ -32,30 +37,44 @@ def check_exists(name: str) -> None:
 def check_interface(name: str) -> None:
     """Raise ConfigurationError unless the interface exists and is up."""
     check_exists(name)
-    if not _is_up(name):
+    if not is_up(name):
         raise ConfigurationError(f"network interface {name!r} is down; run: ip link set {name} up")
 
 
-def check_peer(peer: str) -> None:
-    """Raise ConfigurationError unless a peer (``host`` or ``host:port``) resolves to an address.
+def is_elsewhere(peer: str) -> bool:
+    """Return whether a peer is an address of another machine; a name may be any machine's."""
+    host = peer.rpartition("/")[2]
+    host = host[1:].partition("]")[0] if host.startswith("[") else host
+    for text in (host, host.partition(":")[0]):
+        with suppress(ValueError):
+            address = ip_address(text)
+            return not (address.is_loopback or address.is_multicast)
+    return False
 
-    The library ends the whole process for a name that does not resolve.
-    """
-    host, _, port = peer.partition(":")
+
+def unknown_peer(peer: str) -> str:
+    """Return the error for a peer that is no address and no name that resolves."""
+    return (
+        f"DDS peer {peer!r} cannot be resolved; expected an address (192.168.7.2, fd00::2 or"
+        " udp/192.168.7.2) or a host name, with an optional :port ([fd00::2]:7410)"
+    )
+
+
+def has_multicast(name: str) -> bool:
+    """Return whether an interface carries multicast; loopback does, flag or not."""
+    return name == LOOPBACK or bool(flags(name) & _MULTICAST)
+
+
+def is_up(name: str) -> bool:
+    """Return whether an interface is up."""
+    return bool(flags(name) & _UP)
+
+
+def flags(name: str) -> int:
+    """Return the flags of an interface; all of them when the kernel does not say."""
+    query = struct.pack("16s24x", name.encode())
     try:
-        if not host or (port and not 0 < int(port) <= 65535):
-            raise ValueError
-        socket.getaddrinfo(host, None, socket.AF_INET)
-    except (ValueError, OSError):
-        raise ConfigurationError(
-            f"DDS peer {peer!r} cannot be resolved; expected an IPv4 address or a host name,"
-            " with an optional :port"
-        ) from None
-
-
-def _is_up(name: str) -> bool:
-    try:
-        flags = int((_SYSFS / name / "flags").read_text(), 16)
-    except (OSError, ValueError):
-        return True
-    return bool(flags & _UP)
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as channel:
+            return int(struct.unpack_from("=H", fcntl.ioctl(channel, _SIOCGIFFLAGS, query), 16)[0])
+    except OSError:
+        return _UP | _MULTICAST

@@ -15,7 +15,7 @@ from cyclonedds.topic import Topic
 from safety_island.dds import binding
 from safety_island.dds.config import DdsConfig
 from safety_island.dds.discovery import PUBLICATIONS, SUBSCRIPTIONS, Endpoints, RemoteEndpoint
-from safety_island.dds.domain import close_domain, open_domain
+from safety_island.dds.domain import close_domain, closed_to_other_interfaces, open_domain
 from safety_island.dds.endpoints import Publisher, Subscription
 from safety_island.dds.errors import DdsError
 from safety_island.dds.mismatch import why_not
@@ -62,10 +62,14 @@ class Participant:
         self._closed = False
         try:
             qos = CycloneQos(Policy.Userdata(PARTICIPANT_USER_DATA))
-            self._participant = DomainParticipant(domain_id, qos)
+            with closed_to_other_interfaces(domain_id):
+                self._participant = DomainParticipant(domain_id, qos)
         except DDSException as problem:
             close_domain(domain_id)
             raise DdsError(f"no participant in domain {domain_id}: {problem}") from None
+        except DdsError:
+            close_domain(domain_id)
+            raise
         self.guid: bytes = self._participant.guid.bytes
         self._waitset = WaitSet(self._participant)
         self._found = {

@@ -9,6 +9,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import IO
 
+from safety_island.dds.library_log import library_log, write
+
 _STDERR = 2
 _PREFIX = re.compile(r"^\d+\.\d+ \[\w*\]\s+\S+?:\s*", re.MULTILINE)
 
@@ -22,28 +24,47 @@ class Captured:
     @property
     def cause(self) -> str:
         """All lines as one, for an error message."""
-        return "; ".join(line.strip() for line in _PREFIX.sub("", self.raw).splitlines() if line)
+        return cause(self.raw)
+
+
+def cause(text: str) -> str:
+    """Return lines of the library as one, without their time stamps."""
+    return "; ".join(line.strip() for line in _PREFIX.sub("", text).splitlines() if line)
 
 
 @contextmanager
-def captured_stderr() -> Iterator[Captured]:
-    """Collect file descriptor 2 for the whole process while the block runs.
+def captured_log(traced: bool) -> Iterator[Captured]:
+    """Collect what the library says while a domain starts; later lines of it are throttled.
 
-    Text of a block that raises is kept for the caller; otherwise it goes on to standard error.
+    Text of a block that raises is kept for the caller; otherwise it goes on to standard error. A
+    domain whose trace was asked for (``traced``) goes on to write to standard error itself.
     """
     captured = Captured()
+    if traced:
+        with _captured_descriptor(captured):
+            yield captured
+        sys.stderr.write(captured.raw)
+        return
+    logged: list[str] = []
+    try:
+        with library_log(logged), _captured_descriptor(captured):
+            yield captured
+    finally:
+        captured.raw += "".join(logged)
+    write(captured.raw)
+
+
+@contextmanager
+def _captured_descriptor(captured: Captured) -> Iterator[None]:
+    """Collect file descriptor 2 for the whole process while the block runs."""
     sys.stderr.flush()
     saved = os.dup(_STDERR)
     with os.fdopen(os.memfd_create("stderr"), "w+b") as collected:
         os.dup2(collected.fileno(), _STDERR)
         try:
-            yield captured
-        except BaseException:
+            yield
+        finally:
             _restore(saved, collected, captured)
-            raise
-        _restore(saved, collected, captured)
-    if captured.raw:
-        sys.stderr.write(captured.raw)
 
 
 def _restore(saved: int, collected: IO[bytes], captured: Captured) -> None:

@@ -72,6 +72,11 @@ planner said, and no tick was missed.
         help="DDS domains of main compute and island (default: 1 2, or the next pair that nobody "
         "uses on this machine)",
     )
+    parser.add_argument(
+        "--domain-tag",
+        metavar="TAG",
+        help="tag of the island's domain: who has another one, or none, is no part of it",
+    )
     parser.add_argument("--plain", action="store_true", help="plain lines instead of a live view")
     options.add_json(parser, "the summary")
 
@@ -98,8 +103,10 @@ def _run(arguments: argparse.Namespace, domains: tuple[int, int]) -> int:
     with TemporaryDirectory() as folder, _display(arguments, domains) as show:
         main, island = domains
         children = [
-            island_child(island, arguments.params, arguments.period, arguments.target),
-            bridge_child(domains, Path(folder)),
+            island_child(
+                island, arguments.params, arguments.period, arguments.target, arguments.domain_tag
+            ),
+            bridge_child(domains, Path(folder), arguments.domain_tag),
             vehicle_child(main, arguments.course, arguments.duration),
         ]
         limit_s = arguments.duration + GRACE_S if arguments.duration else math.inf

@@ -13,20 +13,25 @@ LOOPBACK = ("--interface", "lo")
 
 
 def island_child(
-    domain: int, params: Sequence[str], period_s: float | None, target: str = "posix"
+    domain: int,
+    params: Sequence[str],
+    period_s: float | None,
+    target: str = "posix",
+    tag: str | None = None,
 ) -> Child:
     """Return the safety island, not started."""
     run = ["run", "--domain", str(domain), "--target", target, "--params", *params]
     if period_s is not None:
         run += ["--period", repr(period_s)]
-    return Child(ISLAND, [*run, *LOOPBACK, "--json"])
+    return Child(ISLAND, [*run, *_tagged(tag), *LOOPBACK, "--json"])
 
 
-def bridge_child(domains: tuple[int, int], folder: Path) -> Child:
+def bridge_child(domains: tuple[int, int], folder: Path, tag: str | None = None) -> Child:
     """Return the bridge between main compute and island; its file is written to ``folder``."""
     config = folder / "bridge-config.yaml"
     config.write_text(bridge_file(domains), "utf-8")
-    return Child(BRIDGE, ["bridge", str(config), *LOOPBACK, "--json"])
+    tagged = _tagged(tag and f"{domains[1]}={tag}")
+    return Child(BRIDGE, ["bridge", str(config), *tagged, *LOOPBACK, "--json"])
 
 
 def vehicle_child(domain: int, course: str, time_s: float) -> Child:
@@ -34,6 +39,11 @@ def vehicle_child(domain: int, course: str, time_s: float) -> Child:
     drive = ["main-compute", "--domain", str(domain), "--course", course]
     drive += ["--within", repr(time_s)] if time_s else ["--repeat"]
     return Child(VEHICLE, [*drive, *LOOPBACK, "--json"])
+
+
+def _tagged(tag: str | None) -> list[str]:
+    """Return the option for the tag of the island's domain."""
+    return [] if tag is None else ["--domain-tag", tag]
 
 
 def bridge_file(domains: tuple[int, int]) -> str:

@@ -44,7 +44,7 @@ docs/status.md explains each state and reason.
     )
     kind.add_argument("--once", action="store_true", help="show one status and end")
     options.add_domain(parser, 2, "the safety island")
-    options.add_interface(parser)
+    options.add_network(parser)
     options.add_timeout(parser, "a status")
     options.add_duration(parser, 0.0)
     options.add_json(parser, "every status")

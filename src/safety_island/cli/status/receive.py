@@ -5,8 +5,8 @@ from __future__ import annotations
 import argparse
 from collections.abc import Callable
 
+from safety_island.cli import options
 from safety_island.cli.status.domain import Domain
-from safety_island.dds.config import DdsConfig
 from safety_island.dds.participant import Participant
 from safety_island.dds.topics import STATUS
 from safety_island.errors import IslandError
@@ -31,8 +31,7 @@ class StatusReader:
         self.clock = PosixClock()
         self.came = False
         """Whether any status came."""
-        config = DdsConfig(interface=arguments.interface)
-        self.participant = Participant(arguments.domain, config, node_name)
+        self.participant = Participant(arguments.domain, options.dds_config(arguments), node_name)
         qos = STATUS.subscription_qos
         self._subscription = self.participant.subscription(STATUS.name, STATUS.type_name, qos)
 

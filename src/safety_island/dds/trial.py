@@ -1,0 +1,42 @@
+"""Tries a configuration in a process of its own, since the library ends the process for some.
+
+A peer that does not resolve, for example, or the peer 0.0.0.0.
+"""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+from typing import Any
+
+from cyclonedds.internal import DDS
+
+from safety_island.dds.stderr import cause
+
+_LIMIT_S = 60.0
+"""Names are resolved meanwhile, and a name server may be slow."""
+_START = """
+import ctypes, sys
+PR_SET_DUMPABLE = 4
+ctypes.CDLL(None).prctl(PR_SET_DUMPABLE, 0, 0, 0, 0)  # no core file
+library = ctypes.CDLL(sys.argv[1])
+library.dds_create_domain.argtypes = [ctypes.c_uint32, ctypes.c_char_p]
+library.dds_create_domain(int(sys.argv[2]), sys.argv[3].encode())
+"""
+
+
+def why_fatal(domain_id: int, xml: str) -> str | None:
+    """Return what the library says when a configuration ends its process; None when it does not."""
+    library: Any = DDS._dll_handle
+    command = [sys.executable, "-I", "-S", "-c", _START, library._name, str(domain_id), xml]
+    try:
+        tried = subprocess.run(
+            command, stdin=subprocess.DEVNULL, capture_output=True, timeout=_LIMIT_S, check=False
+        )
+    except subprocess.TimeoutExpired:
+        return f"it does not come up within {_LIMIT_S:g} s; is a name server out of reach?"
+    if tried.returncode >= 0:
+        return None
+    said = cause(tried.stderr.decode("utf-8", "replace"))
+    return said or f"the library ends with {signal.Signals(-tried.returncode).name}"
