@@ -250,7 +250,7 @@ def test_stop_points_at_one_place_hold_a_vehicle_that_stands_there(
 ) -> None:
     rng = np.random.default_rng(5)
     place = rng.normal(0.0, noise, (2, count))
-    points = make_points(*place, v=0.0, yaw=0.0)
+    points = make_points(place[0], place[1], v=0.0, yaw=0.0)
     place_vehicle(door)
     found = cleaned(door, points)
     assert found["x"] == pytest.approx([-1.0, 0.0, 1.0], abs=0.02)

@@ -6,8 +6,9 @@ And those that planners do publish, whose points have flaws that the path has no
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pytest
@@ -246,7 +247,7 @@ def at_rest(has_ramp: bool = False) -> Scene:
     raise AssertionError("it never stopped")
 
 
-def around(scene: Scene, stations: Sequence[float], speed: float = 0.0) -> Records:
+def around(scene: Scene, stations: Any, speed: float = 0.0) -> Records:
     """Points at some metres ahead of the vehicle, along its heading."""
     plant, along = scene.world.plant, np.asarray(stations, float)
     points = np.zeros(len(along), POINT)

@@ -78,8 +78,9 @@ def lives(state: State) -> list[Life]:
 
 
 def conditions(blocked: tuple[Reason, ...]) -> Iterator[Conditions]:
-    for values in product((Reason.NONE, *blocked), DISENGAGED, BARS, *[BOOLS] * 5):
-        yield Conditions(*values)
+    for reasons in product((Reason.NONE, *blocked), DISENGAGED, BARS):
+        for flags in product(BOOLS, repeat=5):
+            yield Conditions(*reasons, *flags)
 
 
 EVERY = tuple(conditions((Reason.INPUT_STALE, Reason.OVERRUN)))
