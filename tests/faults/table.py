@@ -9,7 +9,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "faults.md"
-ROWS = (*range(1, 52), *range(67, 78), 81, 82, *range(83, 89), 91, 94)
+ROWS = (*range(1, 52), *range(67, 78), *range(81, 89), *range(91, 95))
 """Rows of the catalogue that this campaign covers."""
 ELSEWHERE = (
     ROOT / "tests/can/test_fault_rows.py",
@@ -46,6 +46,9 @@ What is decided, where another reaction could be expected:
   after a process stood still there is.
 - 39: no clock stops a solver. Its iterations are bounded, and a command that is older than
   `timeout_thr_sec` when it would be sent is not sent.
+- 24, 25, 27 to 29: silence is latched in motion. While the vehicle stands, trajectories that come
+  but cannot be followed end the output and latch nothing (row 92); a planner that sends nothing, or
+  the same again, is latched as ever.
 - 94: an island that drives goes on and raises the alarm, as with a second publisher: silence would
   leave the vehicle to the other node.
 - 77: when autonomous mode is left the PID's integrator pauses; it is not reset, as in the firmware.
@@ -85,7 +88,7 @@ FAULTS: dict[int, tuple[str, str, str]] = {
     24: ("empty trajectory", "no command", "1 tick"),
     25: ("one or two points", "the old path until A, then silent", "A + T + 20 ms"),
     26: ("up to a million points", "refused, the tick in time", "T"),
-    27: ("coincident points", "refused", "1 tick"),
+    27: ("coincident points", "one is left; no bit of a command changes", "1 tick"),
     28: ("points in both directions, loops, reverse", "refused; driven; driven", "1 tick"),
     29: ("path out of reach", "steering held and braking, then silent", "0.5 s + 2 T"),
     30: ("path that jumps", "steering within its rate", "rate limit"),
@@ -147,6 +150,12 @@ FAULTS: dict[int, tuple[str, str, str]] = {
         "alarm, silent, does not arm until a second without its frames",
         "1 tick",
     ),
+    92: (
+        "points on top of each other and noise, at rest",
+        "cleaned, goes on; never latched at rest",
+        "1 tick",
+    ),
+    93: ("point beside another, its yaw wrong", "replaced, warned of; no swing", "1 tick"),
 }
 
 

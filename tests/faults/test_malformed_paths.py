@@ -1,9 +1,14 @@
-"""Rows 27 to 31 of the fault catalogue: trajectories that no planner should publish."""
+"""Rows 27 to 31, 92 and 93 of the fault catalogue: trajectories that no planner should publish.
+
+And those that planners do publish, whose points have flaws that the path has not.
+"""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,10 +16,19 @@ import pytest
 from safety_island.control.records import POINT, Records
 from safety_island.control.status import LongitudinalState
 from safety_island.gate.reason import SampleReason
+from safety_island.gate.warning import InputWarning
 from safety_island.life_cycle.reason import Reason
+from safety_island.life_cycle.state import State
 from tests.faults import edit, wire
-from tests.faults.checks import bound, recovers, silent_within, stays_active
-from tests.faults.scene import SLOW, Row, Scene
+from tests.faults.checks import (
+    bound,
+    recovers,
+    silent_within,
+    stays_active,
+    stays_latched,
+    warned,
+)
+from tests.faults.scene import SETTLE_S, SLOW, Row, Scene
 
 RATE_LIMIT = math.radians(60.0)
 """Highest steering rate of the tables [rad/s]."""
@@ -220,3 +234,142 @@ def test_row_31_a_reverse_demand_does_not_speed_up_forward_motion() -> None:
 
     scene.inject(wire.change(edit.points(reverse)), "trajectory")
     assert max(row.speed for row in scene.run(5.0)) < speed + 0.5
+
+
+def at_rest(has_ramp: bool = False) -> Scene:
+    """A vehicle that has driven and stands at a stop point of its course, in autonomous mode."""
+    scene = Scene(course="stop-and-go", start_speed=2.0, has_ramp=has_ramp)
+    scene.run(SETTLE_S)
+    for _ in range(400):
+        if scene.tick().speed == 0.0:
+            scene.run(0.3)
+            return scene
+    raise AssertionError("it never stopped")
+
+
+def around(scene: Scene, stations: Any, speed: float = 0.0) -> Records:
+    """Points at some metres ahead of the vehicle, along its heading."""
+    plant, along = scene.world.plant, np.asarray(stations, float)
+    points = np.zeros(len(along), POINT)
+    points["x"] = plant.x + along * math.cos(plant.yaw)
+    points["y"] = plant.y + along * math.sin(plant.yaw)
+    points["qz"], points["qw"] = math.sin(plant.yaw / 2), math.cos(plant.yaw / 2)
+    points["v"] = speed
+    return points
+
+
+STANDING = {
+    "all at one place": np.zeros(80),
+    "the stop point five times": np.r_[0.5 * np.arange(75) - 3.0, [34.0] * 5],
+    "from here on the stop point": np.r_[0.5 * np.arange(6) - 3.0, np.zeros(40)],
+    "the vehicle's place, then a path": np.r_[np.zeros(20), 0.5 * np.arange(1, 60)],
+    "two places": np.r_[-2.0, np.zeros(9)],
+}
+
+
+@pytest.mark.parametrize("name", STANDING)
+@pytest.mark.parametrize("noise", [0.0, 0.003])
+@pytest.mark.parametrize("has_ramp", [False, True], ids=["dds", "can_only"])
+def test_row_92_a_standing_vehicle_stays_in_operation(
+    name: str, noise: float, has_ramp: bool
+) -> None:
+    """Whatever lies on top of each other, with noise along the path and aside, anew each time."""
+    scene, rng = at_rest(has_ramp=has_ramp), np.random.default_rng(92)
+
+    def still(points: Records) -> Records:
+        found = around(scene, STANDING[name])
+        for field in ("x", "y"):
+            found[field] += rng.normal(0.0, noise, len(found))
+        return found
+
+    scene.inject(wire.change(edit.points(still)), "trajectory")
+    rows = stays_active(scene, 4.0)
+    assert {row.speed for row in rows} == {0.0}
+    assert not scene.input("trajectory").refused
+    scene.clear()
+    assert max(row.speed for row in stays_active(scene, 8.0)) > 1.0, "it drives on"
+
+
+UNDRIVABLE: dict[str, Callable[[Scene], Records]] = {
+    "one place elsewhere": lambda scene: around(scene, [30.0] * 20),
+    "one place that is no stop": lambda scene: around(scene, [0.0] * 20, 1.0),
+    "to and fro": lambda scene: around(scene, [-5.0, 0.0, 5.0, 0.0, -5.0]),
+    "one point": lambda scene: around(scene, [0.0]),
+    "no number": lambda scene: around(scene, [-5.0, 0.0, math.nan, 5.0]),
+    "out of reach": lambda scene: around(scene, 100.0 + np.arange(60.0)),
+}
+
+
+@pytest.mark.parametrize("name", UNDRIVABLE)
+@pytest.mark.parametrize("has_ramp", [False, True], ids=["dds", "can_only"])
+def test_row_92_what_cannot_be_followed_latches_nothing_at_rest(name: str, has_ramp: bool) -> None:
+    """The output ends, and goes on by itself with the first trajectory that can be followed."""
+    scene = at_rest(has_ramp=has_ramp)
+    bad = UNDRIVABLE[name](scene)
+    scene.inject(wire.change(edit.points(lambda _: bad)), "trajectory")
+    rows = scene.run(12.0)
+    assert rows[-1].output == "silent" and {row.speed for row in rows} == {0.0}
+    assert rows[-1].state is State.INIT
+    assert rows[-1].reason in (Reason.INPUT_STALE, Reason.MPC_FAILED)
+    scene.clear()
+    scene.run(1.0)
+    stays_active(scene, 2.0)
+
+
+@pytest.mark.parametrize("name", ["one point", "to and fro"])
+def test_row_92_in_motion_it_is_latched(name: str) -> None:
+    scene = Scene().drive()
+    bad = UNDRIVABLE[name](scene)
+    since = scene.inject(wire.change(edit.points(lambda _: bad)), "trajectory")
+    silent_within(scene, since, bound("trajectory", SLOW))
+    recovers(scene, Reason.INPUT_STALE)
+
+
+def test_row_92_a_dead_planner_is_latched_at_rest() -> None:
+    """Nothing comes, or the same again and again: that is another loss than a bad trajectory."""
+    for fault in (wire.drop, wire.frozen_stamp()):
+        scene = at_rest()
+        scene.inject(fault, "trajectory")
+        scene.run(3.0)
+        assert scene.rows[-1].state is State.SILENT
+        scene.clear()
+        scene.run(1.0)
+        stays_latched(scene, Reason.INPUT_STALE)
+
+
+def inserted(scene: Scene, off: float, gap: float, aside: float, ahead: float) -> edit.Edit:
+    """Insert a stop point beside another, ``ahead`` [m] of the vehicle, its yaw off."""
+    place = scene.world.plant.x + ahead
+
+    def change(points: Records) -> Records:
+        at = int(np.argmin(np.abs(points["x"] - place)))
+        found = np.insert(points, at, points[at])
+        yaw = 2.0 * math.atan2(points["qz"][at], points["qw"][at])
+        found["x"][at] -= gap * math.cos(yaw) + aside * math.sin(yaw)
+        found["y"][at] -= gap * math.sin(yaw) - aside * math.cos(yaw)
+        found["qz"][at], found["qw"][at] = math.sin((yaw + off) / 2), math.cos((yaw + off) / 2)
+        return found
+
+    return edit.points(change)
+
+
+@pytest.mark.parametrize("off", [0.0, 1.2, math.pi / 2, -2.4, math.pi])
+@pytest.mark.parametrize(("gap", "aside"), [(0.002, 0.0), (0.002, 0.002), (0.01, -0.003)])
+def test_row_93_a_point_beside_another_swings_no_steering(
+    off: float, gap: float, aside: float
+) -> None:
+    """Driven over as if it were not there, and warned of when its yaw is wrong."""
+    twin, scene = Scene().drive(), Scene().drive()
+    found = warned(scene)
+    scene.inject(wire.change(inserted(scene, off, gap, aside, 12.0)), "trajectory")
+    rows, others = stays_active(scene, 5.0), stays_active(twin, 5.0)
+    for row, other in zip(rows, others, strict=True):
+        assert row.command is not None and other.command is not None
+        assert row.command[2] == pytest.approx(other.command[2], abs=0.01), "the angle"
+        assert row.command[3:7] == pytest.approx(other.command[3:7], abs=0.05)
+    assert bool(found["trajectory"] & InputWarning.YAW_REPLACED) == (off != 0.0)
+    assert not scene.input("trajectory").refused
+    assert ("contradict the path" in scene.log_text) == (off != 0.0)
+    scene.clear()
+    stays_active(scene, 1.0)
+    assert not scene.input("trajectory").warnings
