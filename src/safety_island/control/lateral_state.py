@@ -58,6 +58,7 @@ REFERENCE_COLUMNS = [
     ("smooth", "f8", (_LONGEST,)),  # work memory of the moving average
     ("anchor", "i8"),  # index of the ego's projection
     ("is_forward", "?"),
+    ("one_sided_ends", "?"),  # the rule of that name, for those who have no parameters
 ]
 
 PREDICTION_COLUMNS = [
@@ -101,7 +102,7 @@ MEMORY_COLUMNS = [
     ("raw_pprev", "f8"),
     ("delay_n", "i8"),  # entries of the input delay buffer
     ("delay", "f4", (MAX_DELAY_STEPS,)),  # oldest first [rad]
-    ("measured", "f4"),  # tyre angle of this tick, less the estimated offset [rad]
+    ("measured", "f4"),  # tyre angle of this tick, without the offset of the sensor [rad]
     ("is_under_control", "?"),
     # steering predictor
     ("predictor_n", "i8"),
@@ -110,8 +111,10 @@ MEMORY_COLUMNS = [
     ("predictor_time", "f8"),
     ("predictor_started", "?"),
     ("predicted", "f8"),
-    # steering offset
-    ("offset", "f8"),
+    # steering offset [rad]
+    ("offset", "f8"),  # in force
+    ("offset_target", "f8"),  # that it follows, when it comes from a topic
+    ("offset_filter", record(FILTER)),
     ("offset_sum", "f8"),
     ("offset_head", "i8"),
     ("offset_samples", "f8", (MAX_OFFSET_SAMPLES,)),

@@ -9,7 +9,7 @@ from safety_island.control.kernel import kernel
 from safety_island.control.longitudinal_history import predict_after_delay
 from safety_island.control.pid import pid_reset
 from safety_island.control.point_list import copy_distinct, insert_point, interpolate_at
-from safety_island.control.points import distance_2d, nearest_index, segment_of
+from safety_island.control.points import distance_2d, nearest_index, offset_along, segment_of
 from safety_island.control.trajectory_walk import pose_ahead, stop_distance
 
 MIN_RUN = 0.01
@@ -60,16 +60,24 @@ def is_far(p, u, s, t):
     t.trans_dev = distance_2d(ego, u)
     own = yaw_of(u.qx, u.qy, u.qz, u.qw)
     t.rot_dev = abs(normalize_angle(yaw_of(ego.qx, ego.qy, ego.qz, ego.qw) - own))
-    return not (
+    return p.enable_deviation_checks and not (
         t.trans_dev <= p.emergency_state_traj_trans_dev
         and t.rot_dev <= p.emergency_state_traj_rot_dev
     )
 
 
 @kernel
-def set_stop_distance(s, work):
-    """Distance from the ego's point to the stop point; 0 where coordinates are beyond reckoning."""
-    s.stop_dist = stop_distance(work, s.n, s.nearest)
+def set_stop_distance(p, u, s, work):
+    """Distance [m] to the stop point, from the ego or from its projection; 0 when not finite.
+
+    From the ego itself it goes on below zero beyond the end of the trajectory.
+    """
+    if p.stop_distance_from_ego:
+        segment = segment_of(work, s.n, find_pose(p, work, s.n, u), u.x, u.y)
+        ahead = offset_along(work, segment, u.x, u.y)
+        s.stop_dist = stop_distance(work, s.n, segment) - ahead
+    else:
+        s.stop_dist = stop_distance(work, s.n, s.nearest)
     if not math.isfinite(s.stop_dist):
         s.stop_dist = 0.0
 

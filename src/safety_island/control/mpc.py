@@ -75,6 +75,8 @@ def locate(params, inputs, lat, trace):
     trace.nearest_idx = lat.nearest
     trace.lateral_error = -math.sin(path_yaw) * ex + math.cos(path_yaw) * ey
     trace.yaw_error = normalize_angle(yaw - path_yaw)
+    if not params.enable_deviation_checks:
+        return _SOLVED, ratio
     if math.sqrt(ex * ex + ey * ey) > params.admissible_position_error:
         return _TOO_FAR, ratio
     if abs(trace.yaw_error) > params.admissible_yaw_error_rad:

@@ -46,6 +46,12 @@ def _nearest_within(points, n, x, y, yaw, limit_squared, yaw_limit):
 
 
 @kernel
+def nearest_position(points, n, x, y):
+    """Nearest point to a position, without limits; of equals the first."""
+    return _global_nearest(points, n, x, y)[0]
+
+
+@kernel
 def nearest_index(points, n, x, y, yaw, dist_limit, yaw_limit):
     """Nearest point with soft limits: both, else the distance alone, else the global nearest.
 

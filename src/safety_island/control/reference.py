@@ -139,6 +139,7 @@ def update_reference(params, points, inputs, lat):
         return
     lat.ref_n = count
     lat.ready = lat.cursor = 0
+    lat.one_sided_ends = params.one_sided_ends
     smooths = params.enable_path_smoothing and count > 2 * params.path_filter_moving_ave_num
     if not smooths and not params.extend_trajectory_for_end_yaw_control:
         ensure(lat, 1)
@@ -149,5 +150,5 @@ def update_reference(params, points, inputs, lat):
     if smooths:
         smooth_reference(lat, count, params.path_filter_moving_ave_num)
     if params.extend_trajectory_for_end_yaw_control:
-        count = extend(lat, count, params.traj_resample_dist)
+        count = extend(params, lat, count)
     close(lat, count)

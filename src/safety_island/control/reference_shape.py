@@ -10,15 +10,63 @@ from safety_island.control.kernel import kernel
 from safety_island.control.reference_positions import ensure
 
 
+TOO_CLOSE = 1e-3
+"""Points of the reference nearer than this [m] give no direction and no curvature."""
+
+
+@kernel
+def _is_short(lat, i, j):
+    """Whether two points of the reference are too close together to give a direction."""
+    dx = lat.rx[j] - lat.rx[i]
+    dy = lat.ry[j] - lat.ry[i]
+    return dx * dx + dy * dy < TOO_CLOSE * TOO_CLOSE
+
+
+@kernel
+def _direction(lat, i, j):
+    """Yaw [rad] of the vehicle on the line from point ``i`` to point ``j``."""
+    yaw = math.atan2(lat.ry[j] - lat.ry[i], lat.rx[j] - lat.rx[i])
+    return yaw if lat.is_forward else yaw + math.pi
+
+
+@kernel
+def _yaw_one_sided(lat, i):
+    """Yaw [rad] of point ``i`` of at least three; too close together: that of the one before."""
+    last = lat.ref_n - 1
+    if i == 0 and not _is_short(lat, 0, 1):
+        return _direction(lat, 0, 1)
+    if i == last and not _is_short(lat, last - 1, last):
+        return _direction(lat, last - 1, last)
+    i = min(max(i, 1), last - 1)
+    while i > 0:
+        close = _is_short(lat, i - 1, i + 1) or _is_short(lat, i - 1, i) or _is_short(lat, i, i + 1)
+        if not close:
+            return _direction(lat, i - 1, i + 1)
+        i -= 1
+    return lat.short_yaw[0]
+
+
 @kernel
 def yaw_at(lat, i):
-    """Yaw [rad] of reference point ``i`` by central differences, not unwrapped; ends copied."""
+    """Yaw [rad] of reference point ``i`` by central differences, not unwrapped; ends copied.
+
+    By the rule ``one_sided_ends`` the ends have the yaw of the end segments.
+    """
     n = lat.ref_n
     if n < 3:
         return lat.short_yaw[min(i, n - 1)]
+    if lat.one_sided_ends:
+        return _yaw_one_sided(lat, min(i, n - 1))
     i = min(max(i, 1), n - 2)
     yaw = math.atan2(lat.ry[i + 1] - lat.ry[i - 1], lat.rx[i + 1] - lat.rx[i - 1])
     return yaw if lat.is_forward else yaw + math.pi
+
+
+@kernel
+def _has_no_curvature(lat, i, span):
+    """Whether two of the three points that give the curvature are too close together."""
+    sides = _is_short(lat, i - span, i) or _is_short(lat, i, i + span)
+    return sides or _is_short(lat, i - span, i + span)
 
 
 @kernel
@@ -27,6 +75,10 @@ def curvature_at(lat, i, reach):
     n = lat.ref_n
     span = min(reach, (n - 1) // 2)
     i = min(max(i, span), n - 1 - span)
+    while lat.one_sided_ends and span > 0 and _has_no_curvature(lat, i, span):
+        i -= 1
+        if i < span:
+            return 0.0
     x1 = lat.rx[i - span]
     y1 = lat.ry[i - span]
     x2 = lat.rx[i]

@@ -45,6 +45,14 @@ class SlopeSource(IntEnum):
     RAW_PITCH = 0
     TRAJECTORY_PITCH = 1
     TRAJECTORY_ADAPTIVE = 2
+    TRAJECTORY_GOAL_ADAPTIVE = 3
+
+
+class ReferenceMode(IntEnum):
+    """How the reference point of a tick is chosen."""
+
+    SPATIAL = 0
+    TEMPORAL = 1
 
 
 class VehicleModel(IntEnum):

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from safety_island.parameter import parameter
+from safety_island.control.release import RELEASES
+from safety_island.parameter import parameter, switch
 
 
 @dataclass(frozen=True)
@@ -47,6 +48,22 @@ class NodeParams:
     ctrl_period: float = parameter("s", "Time from one tick to the next.", 0.005, 1.0)
     timeout_thr_sec: float = parameter(
         "s", "Age at which a command of either controller is no longer published.", 0.01, 10.0
+    )
+    autoware_release: str = parameter(
+        "",
+        "Release of Autoware whose rules the controllers follow; files of Autoware decide it by their"
+        " keys, unless it is given.",
+        choices=RELEASES,
+    )
+    enable_deviation_checks: bool = switch(
+        "Give up following beyond admissible_* and emergency_state_traj_*; Autoware leaves that to"
+        " its control_validator since 0.41."
+    )
+    trajectory_reference_mode: str = parameter(
+        "",
+        "Where the vehicle should be now: at the nearest place of the trajectory (spatial), or where"
+        " the clock says (temporal, Autoware 0.53).",
+        choices=("spatial", "temporal"),
     )
     lateral_controller_mode: str = parameter("", "Lateral controller.", choices=("mpc",))
     longitudinal_controller_mode: str = parameter("", "Longitudinal controller.", choices=("pid",))

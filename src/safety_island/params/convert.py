@@ -27,6 +27,8 @@ def convert(known: Known, value: Any) -> Any:
     elif known.kind == "bool":
         if isinstance(value, bool):
             return value
+    elif isinstance(value, float) and f"{value:.2f}" in known.choices:
+        return f"{value:.2f}"  # a release without quotes is a number to YAML
     elif isinstance(value, str) and (value in known.choices or not known.choices):
         return value
     raise _not_allowed(known, value)

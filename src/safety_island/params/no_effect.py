@@ -42,11 +42,8 @@ NO_EFFECT: dict[str, NoEffect] = {
     "vehicle.cg_to_rear_m": NoEffect(_LOADS),
     # longitudinal/pid.param.yaml
     "stopped_jerk": NoEffect(_UNREAD),
-    "ff_scale_min": NoEffect("of later Autoware; built in here as in 0.40", only=0.5),
-    "ff_scale_max": NoEffect("of later Autoware; built in here as in 0.40", only=2.0),
     # trajectory_follower_node.param.yaml
     "enable_control_cmd_horizon_pub": NoEffect("the experimental horizon is not published"),
-    "trajectory_reference_mode": NoEffect("of later Autoware; built in here", only="spatial"),
     "cyclic_message_timeout_thr_sec": NoEffect("a diagnostic of later Autoware"),
     # what ros2 param dump adds
     "use_sim_time": NoEffect("time is the machine's own", only=False),
