@@ -69,7 +69,7 @@ class _Path(NamedTuple):
     """Memory of a trajectory, and the kernels that read it."""
 
     points: Records
-    check: Callable[[int], int]
+    check: Callable[[int, float], int]
     lateral: Callable[[float], int]
     longitudinal: Callable[[float], int]
 
@@ -162,7 +162,7 @@ class TrajectoryFollower:
         """
         if not math.isfinite(stamp):
             return Refusal.NOT_FINITE
-        if refusal := self._next.check(n):
+        if refusal := self._next.check(n, start):
             return Refusal(refusal)
         self._now, self._next = self._next, self._now
         self._paths += 1

@@ -6,9 +6,10 @@ The bounds are wide: they keep squares and sums of finite numbers finite, nothin
 import math
 
 from safety_island.control.kernel import entry, kernel
-from safety_island.control.limits import MAX_POINTS, MAX_REFERENCE
+from safety_island.control.limits import EXTENSION_POINTS, MAX_POINTS, MAX_REFERENCE
 from safety_island.control.records import PARAMS, POINT
-from safety_island.control.status import Refusal
+from safety_island.control.points import time_of
+from safety_island.control.status import ReferenceMode, Refusal
 
 MAX_POSITION = 1e7
 """[m]; a UTM northing stays below it."""
@@ -38,12 +39,13 @@ _BAD_QUATERNION = int(Refusal.BAD_QUATERNION)
 _TOO_LONG = int(Refusal.TOO_LONG)
 _OUT_OF_RANGE = int(Refusal.OUT_OF_RANGE)
 _MIXED = int(Refusal.MIXED_DIRECTION)
+_BAD_TIMES = int(Refusal.BAD_TIMES)
+_TEMPORAL = int(ReferenceMode.TEMPORAL)
 
 _LARGEST_PART = 2.0  # of a quaternion; the square of a larger one could overflow
 _FEWEST_POINTS = 2
 SAME_PLACE = 1e-8
 """Two points nearer than this [m], in x and in y, are one."""
-_EXTENSION_POINTS = 256  # room for the points that the terminal extension appends
 
 
 @kernel
@@ -100,17 +102,33 @@ def _length(points, n):
     return total
 
 
-@entry(PARAMS, POINT, int)
-def check_trajectory(params, points, n):
+@kernel
+def _has_ascending_times(points, n, start):
+    """Whether each point is due later than the one before."""
+    previous = start
+    for i in range(1, n):
+        time = time_of(points, i, start)
+        if not time > previous:
+            return False
+        previous = time
+    return True
+
+
+@entry(PARAMS, POINT, int, float)
+def check_trajectory(params, points, n, start):
     """Refusal of a received trajectory ``points[:n]``; nearly unit orientations become units.
 
-    A trajectory leads forward or backward, not both, and so do its speeds: points in another order
+    ``start`` [s] is the time_from_start of the first point. In the temporal mode times must ascend,
+    and points may coincide: the vehicle waits there. A trajectory leads forward or backward, not both, and so do its speeds: points in another order
     than that of driving would lead to and fro.
     """
     if n < _FEWEST_POINTS:
         return _TOO_FEW
     if n > MAX_POINTS:
         return _TOO_MANY
+    is_timed = params[0].trajectory_reference_mode == _TEMPORAL
+    if is_timed and not _has_ascending_times(points, n, start):
+        return _BAD_TIMES
     bound = 0.0  # at least the length of the path
     forward = 0.0
     backward = 0.0
@@ -125,13 +143,13 @@ def check_trajectory(params, points, n):
         if i > 0:
             dx = points[i].x - points[i - 1].x
             dy = points[i].y - points[i - 1].y
-            if abs(dx) < SAME_PLACE and abs(dy) < SAME_PLACE:
+            if abs(dx) < SAME_PLACE and abs(dy) < SAME_PLACE and not is_timed:
                 return _COINCIDENT
             bound += abs(dx) + abs(dy)
             way = _advance(points[i - 1], dx, dy)
             forward += max(way, 0.0)
             backward += max(-way, 0.0)
-    room = (MAX_REFERENCE - _EXTENSION_POINTS) * params[0].traj_resample_dist
+    room = (MAX_REFERENCE - EXTENSION_POINTS) * params[0].traj_resample_dist
     if bound > room and _length(points, n) > room:
         return _TOO_LONG
     is_mixed = min(forward, backward) > MAX_BACKTRACK or min(fastest, -slowest) > STANDSTILL

@@ -17,13 +17,15 @@ from safety_island.control.points import distance_2d, nearest_index
 from safety_island.control.qp_records import QP
 from safety_island.control.records import COMMAND, INPUTS, PARAMS, POINT, TRACE
 from safety_island.control.reference import accept_source, update_reference
+from safety_island.control.reference_temporal import accept_timed
 from safety_island.control.solver import solve, tell_solver
-from safety_island.control.status import Mode, MpcStatus
+from safety_island.control.status import Mode, MpcStatus, ReferenceMode
 from safety_island.control.steering_offset import follow_offset, update_offset
 
 _SOLVED = int(MpcStatus.SOLVED)
 _NO_REFERENCE = int(MpcStatus.NO_REFERENCE)
 _AUTONOMOUS = int(Mode.AUTONOMOUS)
+_TEMPORAL = int(ReferenceMode.TEMPORAL)
 _FEWEST_POINTS = 3
 
 
@@ -32,12 +34,17 @@ def _set_trajectory(params, points, inputs, lat):
     """Take the trajectory in force as the reference, or keep the old one when it is too short."""
     if inputs.n_points < _FEWEST_POINTS:
         return
+    is_timed = params.trajectory_reference_mode == _TEMPORAL
     if lat.source_id != inputs.trajectory_id:
-        accept_source(params, points, inputs.n_points, lat)
+        if is_timed:
+            accept_timed(params, points, inputs, lat)
+        else:
+            accept_source(params, points, inputs.n_points, lat)
         lat.source_id = inputs.trajectory_id
         last = points[inputs.n_points - 1]
         remember_end(params, lat, last.x, last.y, inputs.trajectory_stamp)
-    update_reference(params, points, inputs, lat)
+    if not is_timed:
+        update_reference(params, points, inputs, lat)
 
 
 @kernel

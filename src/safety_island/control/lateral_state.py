@@ -3,6 +3,7 @@
 import numpy as np
 
 from safety_island.control.limits import (
+    EXTENSION_POINTS,
     MAX_DELAY_STEPS,
     MAX_HISTORY,
     MAX_HORIZON,
@@ -19,6 +20,7 @@ _SKEW = 40
 """Numbers between two long columns, five lines of a cache: columns that lie a power of two apart
 share their places in the cache, and a tick that reads twenty of them would displace its own."""
 _SOURCE = MAX_POINTS + _SKEW
+_TIMED = MAX_POINTS + EXTENSION_POINTS + 2 + _SKEW
 _LONGEST = MAX_REFERENCE + 2 + _SKEW  # the reference with its two closing duplicates
 
 FILTER = [
@@ -58,6 +60,12 @@ REFERENCE_COLUMNS = [
     ("smooth", "f8", (_LONGEST,)),  # work memory of the moving average
     ("anchor", "i8"),  # index of the ego's projection
     ("is_forward", "?"),
+    ("is_timed", "?"),  # the points are as received, each with its time, yaw and curvature:
+    ("rt", "f8", (_TIMED,)),  # time_from_start [s]
+    ("ryaw", "f8", (_TIMED,)),  # [rad]
+    ("rk", "f8", (_TIMED,)),  # curvature [1/m] over ``curvature_reach`` points
+    ("rks", "f8", (_TIMED,)),  # curvature for the feed-forward [1/m]
+    ("curvature_reach", "i8"),
     ("one_sided_ends", "?"),  # the rule of that name, for those who have no parameters
 ]
 

@@ -6,6 +6,9 @@ MAX_POINTS = 4096
 MAX_REFERENCE = 16384
 """Points of the resampled reference path (1.6 km at the usual 0.1 m)."""
 
+EXTENSION_POINTS = 512
+"""Room for the points that the terminal extension appends (10 m at 0.02 m)."""
+
 MAX_HORIZON = 64
 """Steps of the MPC."""
 

@@ -130,7 +130,7 @@ def longitudinal_tick(params, points, inputs, state, work, command, trace, now):
     clear_flags(t)
     if not is_usable(u, now):
         return NOT_USABLE
-    segment = locate_ego(p, u, s, points, work)
+    segment = locate_ego(p, u, s, points, work, now)
     if segment < 0:
         return NO_TRAJECTORY
     s.dt = period_since(p, s, now)

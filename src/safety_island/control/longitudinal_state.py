@@ -58,6 +58,7 @@ TICK_COLUMNS = [
     ("n", "i8"),  # points of the working list
     ("nearest", "i8"),  # index of the ego's point in it
     ("target", "i8"),  # index of the target point
+    ("times", "f8", (LIST_CAPACITY,)),  # of the points of the list (temporal mode) [s]
     ("ego_point", POINT),  # the trajectory where the ego is
     ("target_point", POINT),  # the trajectory where the ego will be after the delay
     ("stop_dist", "f8"),  # [m]

@@ -53,6 +53,8 @@ def yaw_at(lat, i):
     By the rule ``one_sided_ends`` the ends have the yaw of the end segments.
     """
     n = lat.ref_n
+    if lat.is_timed:
+        return lat.ryaw[min(i, n + 1)]
     if n < 3:
         return lat.short_yaw[min(i, n - 1)]
     if lat.one_sided_ends:
@@ -63,35 +65,43 @@ def yaw_at(lat, i):
 
 
 @kernel
-def _has_no_curvature(lat, i, span):
-    """Whether two of the three points that give the curvature are too close together."""
-    sides = _is_short(lat, i - span, i) or _is_short(lat, i, i + span)
-    return sides or _is_short(lat, i - span, i + span)
+def menger_curvature(x1, y1, x2, y2, x3, y3):
+    """Curvature [1/m] of the circle through three points, positive to the left.
 
-
-@kernel
-def curvature_at(lat, i, reach):
-    """Menger curvature [1/m] of points i-L, i, i+L, positive to the left; ends copied."""
-    n = lat.ref_n
-    span = min(reach, (n - 1) // 2)
-    i = min(max(i, span), n - 1 - span)
-    while lat.one_sided_ends and span > 0 and _has_no_curvature(lat, i, span):
-        i -= 1
-        if i < span:
-            return 0.0
-    x1 = lat.rx[i - span]
-    y1 = lat.ry[i - span]
-    x2 = lat.rx[i]
-    y2 = lat.ry[i]
-    x3 = lat.rx[i + span]
-    y3 = lat.ry[i + span]
+    The second result says whether they lie far enough apart to give one.
+    """
     a = (x2 - x1) * (x2 - x1) + (y2 - y1) * (y2 - y1)
     b = (x3 - x2) * (x3 - x2) + (y3 - y2) * (y3 - y2)
     c = (x1 - x3) * (x1 - x3) + (y1 - y3) * (y1 - y3)
     product = math.sqrt(a * b * c)
     if product < 1e-10:
-        return 0.0
-    return 2.0 * ((x2 - x1) * (y3 - y1) - (y2 - y1) * (x3 - x1)) / product
+        return 0.0, False
+    area = 2.0 * ((x2 - x1) * (y3 - y1) - (y2 - y1) * (x3 - x1))
+    return area / product, min(a, b, c) >= TOO_CLOSE * TOO_CLOSE
+
+
+@kernel
+def curvature_at(lat, i, reach):
+    """Menger curvature [1/m] of points i-L, i, i+L, positive to the left; ends copied.
+
+    By the rule ``one_sided_ends`` points too close together have the curvature of those before.
+    """
+    n = lat.ref_n
+    if lat.is_timed:
+        return lat.rk[i] if reach == lat.curvature_reach else lat.rks[i]
+    span = min(reach, (n - 1) // 2)
+    i = min(max(i, span), n - 1 - span)
+    while True:
+        a = i - span
+        b = i + span
+        curvature, is_defined = menger_curvature(
+            lat.rx[a], lat.ry[a], lat.rx[i], lat.ry[i], lat.rx[b], lat.ry[b]
+        )
+        if is_defined or not lat.one_sided_ends:
+            return curvature
+        i -= 1
+        if i < span:
+            return 0.0
 
 
 @kernel

@@ -83,6 +83,7 @@ class Refusal(IntEnum):
     TOO_LONG = 6
     OUT_OF_RANGE = 7
     MIXED_DIRECTION = 8
+    BAD_TIMES = 9
 
 
 class MpcStatus(IntEnum):
