@@ -15,7 +15,7 @@ MAX_HORIZON = 64
 MAX_DELAY_STEPS = 64
 """Control periods of input delay that the MPC compensates."""
 
-MAX_RATE_TABLE = 8
+MAX_RATE_TABLE = 32
 """Entries of a steering-rate-limit table."""
 
 MAX_HISTORY = 256

@@ -22,16 +22,16 @@ class VehicleParams:
         "m", "Left wheel to right wheel; not used by the controllers.", 0.05, 10.0
     )
     front_overhang: float = parameter(
-        "m", "Front axle to front bumper; not used by the controllers.", 0.0, 10.0
+        "m", "Front axle to front bumper; not used by the controllers.", -10.0, 10.0
     )
     rear_overhang: float = parameter(
-        "m", "Rear axle to rear bumper; not used by the controllers.", 0.0, 10.0
+        "m", "Rear axle to rear bumper; not used by the controllers.", -10.0, 10.0
     )
     left_overhang: float = parameter(
-        "m", "Left wheel to left side; not used by the controllers.", 0.0, 5.0
+        "m", "Left wheel to left side; not used by the controllers.", -5.0, 5.0
     )
     right_overhang: float = parameter(
-        "m", "Right wheel to right side; not used by the controllers.", 0.0, 5.0
+        "m", "Right wheel to right side; not used by the controllers.", -5.0, 5.0
     )
     vehicle_height: float = parameter(
         "m", "Ground to roof; not used by the controllers.", 0.05, 10.0
@@ -48,6 +48,13 @@ class NodeParams:
     ctrl_period: float = parameter("s", "Time from one tick to the next.", 0.005, 1.0)
     timeout_thr_sec: float = parameter(
         "s", "Age at which a command of either controller is no longer published.", 0.01, 10.0
+    )
+    cyclic_message_timeout_thr_sec: float = parameter(
+        "s",
+        "Age of the trajectory from which on the diagnostic cyclic_message_timeout is an error (since"
+        " 0.51); it ends no output.",
+        0.01,
+        60.0,
     )
     autoware_release: str = parameter(
         "",

@@ -48,6 +48,6 @@ def _not_allowed(known: Known, value: Any) -> NotAllowedError:
 
 def nearest(key: str, keys: tuple[str, ...] = tuple(KNOWN)) -> str:
     """Return the key or keys most like a misspelt one, joined by 'or'; empty when none is."""
-    close = get_close_matches(key, keys, n=3, cutoff=0.5)
+    close = get_close_matches(key, keys, n=3, cutoff=0.8)
     likeness = {name: SequenceMatcher(None, name, key).ratio() for name in close}
     return " or ".join(name for name in close if likeness[name] == max(likeness.values()))
