@@ -150,22 +150,23 @@ class Layers:
         self.count += 1
         self._add(Entry(RELEASE, decision.release, place, place))
 
-    def _fill_other_releases(self) -> None:
-        """Give keys that the release in force does not have the values of our own set."""
+    def _of_other_releases(self) -> dict[str, Entry]:
+        """Values of our own set for keys that are missing because the release has no such key."""
         release = self.values.get(RELEASE)
         if release is None:
-            return
-        defaults = {e.key: e for s in sources_of("default") for e in parse(s).entries}
-        for key, span in SPANS.items():
-            if key in KNOWN and key not in self.origins and not span.holds(release):
-                self._add(defaults[key])
+            return {}
+        absent = {key for key, span in SPANS.items() if key in KNOWN and not span.holds(release)}
+        absent -= set(self.origins)
+        entries = (e for s in sources_of("default") for e in parse(s).entries)
+        return {entry.key: entry for entry in entries if entry.key in absent} if absent else {}
 
     def check(self) -> None:
         """Look for missing keys and for values that do not fit together."""
-        self._fill_other_releases()
-        for key in KNOWN:
-            if key not in self.origins:
-                self.problems.append(self._missing(key))
+        fillers = self._of_other_releases()
+        missing = [key for key in KNOWN if key not in self.origins and key not in fillers]
+        self.problems += [self._missing(key) for key in missing]
+        for entry in fillers.values():
+            self._add(entry)
         usable = {key: value for key, value in self.values.items() if key not in self.refused}
         for rule, text in inconsistencies(usable):
             key = self._culprit(rule)
