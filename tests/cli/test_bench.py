@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import json
 import math
+from pathlib import Path
 
 import pytest
 
+from safety_island.bench import ratios
 from safety_island.cli.main import main
 
 pytest.importorskip("osqp")
 Capture = pytest.CaptureFixture[str]
+ROOT = Path(__file__).parents[2]
 
 
 def test_json_has_the_keys_that_scripts_read(capsys: Capture) -> None:
@@ -26,10 +29,45 @@ def test_json_has_the_keys_that_scripts_read(capsys: Capture) -> None:
 
 def test_one_solver_for_a_person(capsys: Capture) -> None:
     assert main(["bench", "tick", "--rounds", "1", "--solver", "daqp"]) == 0
-    head, row, foot, whole = capsys.readouterr().out.splitlines()
+    head, row, foot, whole, firmware = capsys.readouterr().out.splitlines()
     assert head.split() == ["solver", "median", "p99", "max", "yardstick", "ratio", "whole", "node"]
     assert row.split()[0] == "daqp" and row.count(" us") == 4
-    assert "C++" in foot and "gate" in whole
+    assert foot.endswith(ratios.YARDSTICK) and "gate" in whole
+    assert "C++" in firmware and firmware.endswith(ratios.METHOD)
+
+
+def test_one_yardstick_with_one_definition(capsys: Capture) -> None:
+    """Help and README define it in the words of the output; no other figure is in yardsticks."""
+    with pytest.raises(SystemExit):
+        main(["bench", "--help"])
+    help_text = " ".join(capsys.readouterr().out.split())
+    readme = " ".join((ROOT / "README.md").read_text("utf-8").split())
+    for text in (help_text, readme):
+        assert ratios.YARDSTICK in text and ratios.METHOD in text
+
+
+def test_the_readme_states_the_ratios_that_the_code_states() -> None:
+    readme = (ROOT / "README.md").read_text("utf-8")
+    speed = readme[readme.index("## Speed") : readme.index("## When something fails")]
+    single = (ratios.HEAP_TUNED, ratios.AS_SHIPPED, ratios.INSTRUCTIONS, ratios.WHOLE_NODE)
+    for ratio in (*single, *ratios.POINTS.values(), *ratios.HORIZON.values()):
+        assert f"{ratio:g}x" in speed
+    for size in (*ratios.POINTS, *ratios.HORIZON):
+        assert f"{size:,}" in speed
+
+
+def test_the_ratios_fit_each_other() -> None:
+    """Tick and whole node of the README, in yardsticks, make the ratio of the whole node."""
+    tick, node = yardsticks("island, `unconstraint_fast`"), yardsticks("the same within")
+    assert ratios.HEAP_TUNED * tick / node == pytest.approx(ratios.WHOLE_NODE, rel=0.05)
+    assert ratios.HEAP_TUNED < ratios.INSTRUCTIONS < ratios.AS_SHIPPED
+
+
+def yardsticks(row: str) -> float:
+    """The first figure of a row of the README's table of yardsticks."""
+    lines = (ROOT / "README.md").read_text("utf-8").splitlines()
+    (found,) = [line for line in lines if line.startswith("| island") and row in line]
+    return float(found.split("|")[2])
 
 
 def test_virtual_time(capsys: Capture) -> None:

@@ -11,7 +11,7 @@ import pytest
 
 from safety_island.cli.main import main
 from safety_island.replay.recording import CONTRACT_COLUMNS
-from tests.replay.runs import TICKS, changed, output_column, write
+from tests.replay.runs import TICKS, changed, guarded, output_column, write
 
 Capture = pytest.CaptureFixture[str]
 
@@ -43,6 +43,7 @@ def test_runs_that_are_right(folder: Path, capsys: Capture) -> None:
     lines = capsys.readouterr().out.splitlines()
     assert lines[0] == f"pass  bend/one  {TICKS} ticks"
     assert [word for word in lines[1].split() if word in CONTRACT_COLUMNS] == list(CONTRACT_COLUMNS)
+    assert lines[1].endswith(f"guard: 0 of {TICKS} commands changed, 0 refused")
     assert lines[2] == f"pass  bend/two  {TICKS} ticks"
     assert lines[-1] == "2 runs: 2 passed, 0 failed"
 
@@ -55,6 +56,22 @@ def test_a_run_that_is_not_fails_by_name(folder: Path, capsys: Capture) -> None:
     (line,) = [line for line in out.splitlines() if "first beyond tolerance" in line]
     assert "tick 5 (t = " in line and "velocity is " in line and "recorded 2" in line
     assert out.endswith("2 runs: 1 passed, 1 failed\n")
+
+
+def test_what_the_guard_changes_fails_and_is_counted(tmp_path: Path, capsys: Capture) -> None:
+    """What is published is compared, not what the controllers wanted."""
+    path = write(tmp_path / "bend" / "one.npz", **guarded(velocity=0.5))
+    assert main(["replay", str(path)]) == 1
+    _, counts, exceeding, _ = capsys.readouterr().out.splitlines()
+    assert f"of {TICKS} commands changed, 0 refused (VELOCITY " in counts
+    assert "velocity is 0.5," in exceeding and exceeding.endswith("the guard clamped it (VELOCITY)")
+    assert main(["replay", str(path), "--json"]) == 1
+    (run,) = strict_json(capsys.readouterr().out)["runs"]
+    changed = run["guard"]["changed"]
+    assert 0 < changed == run["guard"]["limits"]["VELOCITY"]
+    assert f"guard: {changed} of" in counts
+    assert run["guard"]["first_tick"] == run["first_exceeding"]["tick"]
+    assert counts.endswith(f"first in tick {run['guard']['first_tick']}")
 
 
 def test_files_are_replayed_in_the_order_of_the_command(folder: Path, capsys: Capture) -> None:
@@ -70,8 +87,10 @@ def test_json_for_a_script(folder: Path, capsys: Capture) -> None:
     told = strict_json(capsys.readouterr().out)
     assert set(told) == {"runs", "passed"} and told["passed"] is False
     good, bad = told["runs"]
-    keys = ["name", "file", "ticks", "loose_ticks", "greatest_difference", "first_exceeding"]
-    assert list(good) == [*keys, "passed"]
+    keys = ["name", "file", "ticks", "loose_ticks", "greatest_difference", "guard"]
+    assert list(good) == [*keys, "first_exceeding", "passed"]
+    nothing = {"changed": 0, "refused": 0, "limits": {}, "first_tick": None}
+    assert good["guard"] == {"commands": TICKS, **nothing}
     assert (good["name"], good["ticks"], good["passed"]) == ("bend/one", TICKS, True)
     assert good["file"] == str(folder / "bend" / "one.npz")
     assert set(good["greatest_difference"]) == set(CONTRACT_COLUMNS)

@@ -17,6 +17,7 @@ from safety_island.control.kernel import JIT
 from safety_island.replay.check import Table
 from safety_island.replay.compare import judge
 from safety_island.replay.feed import Replay
+from safety_island.replay.guard_acts import GUARD_COLUMNS, LIMITS, VERDICT
 from safety_island.replay.recording import CONTRACT_COLUMNS, Recording, load
 from tests.golden.harness import name_of, recorded, run_paths
 
@@ -71,17 +72,21 @@ def cut(run: Recording, ticks: int) -> Recording:
 
 
 def play(run: Recording) -> dict[str, Table]:
-    """Replay a run; return the contract's columns and the trace's, NaN where nothing came out."""
+    """Replay a run; return what was published, the guard's columns and the trace's.
+
+    NaN stands where nothing came out.
+    """
     player = Replay(run)
     traced = (*OF_INPUTS, *OF_SOLUTION[5:], "predicted_steer", CONVERGED)
     names = (*CONTRACT_COLUMNS[2:], *traced, *OF_SOLUTION[:5])
-    columns = {name: np.full(run.ticks, np.nan) for name in names}
+    columns = {name: np.full(run.ticks, np.nan) for name in (*names, *GUARD_COLUMNS)}
     columns |= {"t": run.state["t"], "published": np.zeros(run.ticks)}
     for tick in range(run.ticks):
-        command, trace = player.tick(tick), player.follower.trace
+        command, trace, check = player.tick(tick), player.follower.trace, player.node.check
+        columns[VERDICT][tick], columns[LIMITS][tick] = check.verdict, check.limits
         if command is not None:
             columns["published"][tick] = 1.0
-            values = [float(command[name][0]) for name in CONTRACT_COLUMNS[2:]]
+            values = [float(getattr(command, name)) for name in CONTRACT_COLUMNS[2:]]
             values += [float(trace[name][0]) for name in traced] + list(trace["u"][0, :5])
             for name, value in zip(names, values, strict=True):
                 columns[name][tick] = value
@@ -129,6 +134,7 @@ def test_a_run_is_the_firmwares(path: Path) -> None:
     columns = play(run)
     verdict = judge(run, columns)
     assert verdict.passed, str(verdict.exceeding)
+    assert not verdict.guard.acts, str(verdict.guard.acts[0])
     if "mpc_solved" in run.output:  # the benchmark runs hold the contract's columns only
         check_trace(run, columns)
 

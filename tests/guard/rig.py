@@ -22,18 +22,20 @@ WIDE = GuardParams(
     jerk=(500.0, 500.0),
     brake_jerk=(500.0, 500.0),
     velocity=50.0,
+    rolling_speed=0.5,
     shortest_step=0.1,
     longest_step=0.4,
 )
 """Limits that a test narrows one at a time."""
 
+SINGLE = ("velocity", "rolling_speed", "shortest_step", "longest_step")
+"""Limits that are one number at every speed."""
+
 
 def limited(**limits: Any) -> GuardParams:
     """WIDE with some limits changed; a number stands for a list of it."""
     lists: dict[str, Any] = {
-        name: (value, value)
-        if isinstance(value, float) and name not in ("velocity", "shortest_step", "longest_step")
-        else value
+        name: (value, value) if isinstance(value, float) and name not in SINGLE else value
         for name, value in limits.items()
     }
     return replace(WIDE, **lists)

@@ -7,10 +7,13 @@ from pathlib import Path
 import pytest
 
 from safety_island.guard import Guard, Limit, Proposal, Verdict
+from safety_island.replay.feed import Replay
 from safety_island.replay.recording import load
 from tests.golden.harness import name_of, parameters_of, run_paths
 
 COLUMNS = ("steering_tire_angle", "steering_tire_rotation_rate", "velocity", "acceleration")
+PUBLISHED_TICKS = 100
+"""Ticks of each run that are played through the node; tests/golden plays all of them."""
 
 
 @pytest.mark.parametrize("path", run_paths(), ids=name_of)
@@ -28,3 +31,16 @@ def test_every_recorded_command_passes(path: Path) -> None:
             assert found.verdict is Verdict.PASSED, (i, Limit(found.limits))
             assert found[2:] == values
     assert not acted
+
+
+@pytest.mark.parametrize("path", run_paths(), ids=name_of)
+def test_what_is_published_is_what_the_controllers_computed(path: Path) -> None:
+    """Bit for bit, from the bytes on the topic."""
+    run = load(path)
+    player = Replay(run)
+    for tick in range(min(run.ticks, PUBLISHED_TICKS)):
+        published = player.tick(tick)
+        if published is not None:
+            computed = player.follower.command[0]
+            assert [getattr(published, name) for name in COLUMNS] == [computed[n] for n in COLUMNS]
+    assert (player.node.check.clamped, player.node.check.refused) == (0, 0)

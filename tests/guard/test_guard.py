@@ -316,6 +316,13 @@ def test_a_vehicle_that_rolls_the_other_way_may_only_slow_down(
     assert found.limits == (Limit.VELOCITY if asked > 0.0 else 0)
 
 
+def test_above_which_speed_it_rolls_is_a_limit_too() -> None:
+    clamped = Stream(rolling_speed=2.0).send(velocity=-2.0, speed=2.1, acceleration=1.0)
+    decided(clamped, Verdict.CLAMPED, Limit.VELOCITY)
+    passed = Stream(rolling_speed=2.0).send(velocity=-2.0, speed=2.0, acceleration=1.0)
+    decided(passed, Verdict.PASSED, Limit(0))
+
+
 @pytest.mark.parametrize(("velocity", "speed"), [(-2.0, 0.5), (2.0, 5.0), (-2.0, -5.0), (0.0, 5.0)])
 def test_a_vehicle_may_start_the_other_way_and_go_on_in_its_own(
     velocity: float, speed: float

@@ -6,7 +6,7 @@ from math import tan
 from typing import Any
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from safety_island.guard import Decision, Guard, Proposal, Verdict
@@ -123,12 +123,20 @@ def test_the_other_way_than_it_rolls(speed: float, velocity: float) -> None:
     assert keeps((0.0, 0.0, velocity, 0.0), speed=-speed)
 
 
+def test_in_reverse_the_limits_are_those_of_the_same_speed_forward() -> None:
+    """Beyond the last point braking may be 3 m/s^2, at standstill 4."""
+    at: dict[str, Any] = {"sent": (0.0, -2.5), "speed": -6.0}
+    assert keeps((0.0, 0.0, -6.0, -3.0), **at)
+    assert not keeps((0.0, 0.0, -6.0, -3.5), **at)
+
+
 _wheel = st.floats(-0.2, 0.2)
+_speed = st.floats(-9.0, 9.0)
 _stream = st.lists(
     st.tuples(
         st.floats(0.02, 0.5),
-        st.tuples(_wheel, st.floats(-0.3, 0.3), st.floats(-1.0, 9.0), st.floats(-4.0, 2.0)),
-        st.floats(-1.0, 9.0),
+        st.tuples(_wheel, st.floats(-0.3, 0.3), _speed, st.floats(-4.0, 2.0)),
+        _speed,
         _wheel,
     ),
     min_size=2,
@@ -143,7 +151,9 @@ def _full() -> Guard:
 
 
 @given(_stream)
-def test_what_passes_at_once_the_full_way_lets_through(stream: list[Any]) -> None:
+@example([(0.5, (0.0, 0.0, -6.0, 0.0), -6.0, 0.0), (0.4, (0.0, 0.0, -6.0, -3.1), -6.0, 0.0)])
+def test_shortcut_on_is_shortcut_off_at_every_speed(stream: list[Any]) -> None:
+    """Forward and in reverse; what passes at once would pass in full too."""
     usual, full = Guard(LIMITS, WHEEL_BASE, TIMEOUT), _full()
     now = 10.0
     for number, (wait, values, speed, steering) in enumerate(stream):

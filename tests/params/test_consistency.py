@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from safety_island.params import check, from_mapping, load_set, notes, with_period
+from safety_island.params import SETS, check, from_mapping, load_set, notes, with_period
 from safety_island.params.consistency import RULES, Rule, inconsistencies
 from safety_island.params.schema import KNOWN, values_of
 from tests.params.files import parameter_file, refused
@@ -123,3 +123,45 @@ def test_a_filter_that_passes_its_input_is_said_once_at_the_start() -> None:
     loads = {f"vehicle.{name}": 1.0 for name in ("mass_fl", "mass_fr", "mass_rl", "mass_rr")}
     dynamics = {"vehicle_model_type": "dynamics", "vehicle.cf": 1.0, "vehicle.cr": 1.0, **loads}
     assert len(notes(from_mapping(dynamics, "firmware"))) == 2
+
+
+@pytest.mark.parametrize("name", SETS)
+def test_no_shipped_guard_is_stricter_than_the_shipped_controllers(name: str) -> None:
+    assert not [note for note in notes(load_set(name)) if "stricter" in note]
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ({"max_steer_angle": 0.8}, "guard.steering_angle is 0.75 at most, stricter than max_steer"),
+        ({"max_acc": 4.5}, "guard.acceleration is 4 at most, stricter than max_acc, which allows"),
+        ({"min_acc": -5.5}, "guard.deceleration is 5 at most, stricter than min_acc, which allows"),
+        ({"stopped_acc": -6.0}, "guard.deceleration is 5 at most, stricter than stopped_acc"),
+        ({"guard.deceleration": [3.0] * 5, "stopped_acc": -2.0}, "stricter than min_acc"),
+        (
+            {"steer_rate_lim_dps_list_by_curvature": [90.0, 50.0, 60.0]},
+            "stricter than steer_rate_lim_dps_list_by_curvature, which allows 1.5708",
+        ),
+        (
+            {"steer_rate_lim_dps_list_by_velocity": [90.0, 50.0, 60.0]},
+            "stricter than steer_rate_lim_dps_list_by_velocity, which allows 1.5708",
+        ),
+    ],
+)
+def test_a_guard_stricter_than_the_controllers_is_said_at_the_start(
+    changes: dict[str, object], told: str
+) -> None:
+    (note,) = notes(from_mapping(changes))
+    assert told in note and note.endswith("clamps commands that the controllers may give")
+
+
+def test_both_limits_of_the_change_of_acceleration_are_compared() -> None:
+    first, second = notes(from_mapping({"max_acc_cmd_diff": 60.0}))
+    assert first.startswith("guard.jerk is 55") and second.startswith("guard.brake_jerk is 55")
+
+
+@pytest.mark.parametrize("key", ["max_acc", "max_acc_cmd_diff", "max_steer_angle"])
+def test_the_firmwares_guard_is_never_stricter(key: str) -> None:
+    known = KNOWN[key]
+    parameters = from_mapping({key: known.high}, "firmware")
+    assert not [note for note in notes(parameters) if "stricter" in note]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -42,3 +43,10 @@ def changed(key: str, column: int, tick: int, value: float) -> Arrays:
 def output_column(name: str) -> int:
     """Where a column stands in the output."""
     return list(arrays_of()["output_cols"]).index(name)
+
+
+def guarded(**limits: object) -> Arrays:
+    """The run's parameters with other limits of the guard."""
+    values = json.loads(str(arrays_of()["params_json"]))
+    values |= {f"guard.{name}": value for name, value in limits.items()}
+    return {"params_json": np.array(json.dumps(values))}

@@ -9,8 +9,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from safety_island.guard import Limit
+from safety_island.guard import Verdict as GuardVerdict
+from safety_island.messages.status import NO_VALUE
 from safety_island.replay.check import Table
 from safety_island.replay.compare import judge
+from safety_island.replay.guard_acts import GUARD_COLUMNS, LIMITS, VERDICT
 from safety_island.replay.recording import CONTRACT_COLUMNS, Recording
 
 ANGLE, RATE = "steering_tire_angle", "steering_tire_rotation_rate"
@@ -37,8 +41,9 @@ def run(solver: str = "unconstraint_fast", **columns: Any) -> Recording:
 
 
 def replayed(recording: Recording, **changes: tuple[int, float]) -> dict[str, Table]:
-    """The recording's own columns, with (tick, difference) added to some."""
+    """The recording's own columns, with (tick, difference) added to some; the guard passed all."""
     columns = {name: values.copy() for name, values in recording.output.items()}
+    columns |= {name: np.zeros(TICKS) for name in GUARD_COLUMNS}
     for name, (tick, difference) in changes.items():
         columns[name][tick] += difference
     return columns
@@ -169,3 +174,20 @@ def test_a_tick_without_a_solution_has_nothing_to_polish() -> None:
 def test_an_osqp_run_that_does_not_tell_is_held_as_exact() -> None:
     recording = run("osqp")
     assert not judge(recording, replayed(recording, **{ANGLE: (1, 2e-6)})).passed
+
+
+def test_what_the_guard_did_is_counted_by_verdict_and_limit() -> None:
+    columns = replayed(run())
+    columns[VERDICT][:] = [NO_VALUE, 0, 1, 1, 2, 0]
+    columns[LIMITS][2:5] = [Limit.JERK, Limit.JERK | Limit.ANGLE, Limit.STALE]
+    acts = judge(run(), columns).guard
+    assert acts.commands == 5
+    assert (acts.count(GuardVerdict.CLAMPED), acts.count(GuardVerdict.REFUSED)) == (2, 1)
+    assert acts.limits() == {"JERK": 2, "ANGLE": 1, "STALE": 1}
+    assert [act.tick for act in acts.acts] == [2, 3, 4] and acts.at(1) is None
+    assert str(acts.at(3)) == "the guard clamped it (ANGLE, JERK)"
+
+
+def test_a_guard_that_lets_everything_pass_did_nothing() -> None:
+    acts = judge(run(), replayed(run())).guard
+    assert (acts.commands, acts.acts, acts.limits()) == (TICKS, (), {})

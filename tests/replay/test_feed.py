@@ -7,18 +7,21 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from safety_island.guard import Limit, Verdict
+from safety_island.messages.status import NO_VALUE
 from safety_island.replay.compare import judge
 from safety_island.replay.feed import Replay, replay
+from safety_island.replay.guard_acts import GUARD_COLUMNS, LIMITS, VERDICT
 from safety_island.replay.recording import CONTRACT_COLUMNS, load
 from tests.golden.harness import recorded
-from tests.replay.runs import TICKS, arrays_of, write
+from tests.replay.runs import TICKS, arrays_of, guarded, write
 
 
 def test_the_columns_are_those_of_the_contract(tmp_path: Path) -> None:
     run = load(write(tmp_path / "a.npz"))
     told: list[int] = []
     columns = replay(run, report=told.append)
-    assert set(columns) == {*CONTRACT_COLUMNS, "is_steer_converged"}
+    assert set(columns) == {*CONTRACT_COLUMNS, "is_steer_converged", *GUARD_COLUMNS}
     assert all(values.shape == (TICKS,) for values in columns.values())
     np.testing.assert_array_equal(columns["t"], run.state["t"])
     assert told == list(range(TICKS))
@@ -80,3 +83,28 @@ def test_an_input_that_is_no_number_is_refused_on_the_way(tmp_path: Path) -> Non
     assert broken["published"].all()
     for name, values in broken.items():
         assert values.tobytes() == held[name].tobytes(), name
+
+
+def test_what_is_replayed_is_what_is_published_behind_the_guard(tmp_path: Path) -> None:
+    """A guard that is narrower than the recording shows in the columns, the controllers' do not."""
+    run = load(write(tmp_path / "a.npz", **guarded(velocity=0.5)))
+    columns = replay(run)
+    assert (np.abs(run.output["velocity"]) > 0.5).any()
+    assert (np.abs(columns["velocity"]) <= 0.5).all()
+    changed = columns[VERDICT] == Verdict.CLAMPED
+    np.testing.assert_array_equal(changed, columns[LIMITS] == Limit.VELOCITY)
+    verdict = judge(run, columns)
+    assert not verdict.passed and len(verdict.guard.acts) == changed.sum() > 0
+
+
+def test_the_bytes_are_those_that_the_node_sent(tmp_path: Path) -> None:
+    player = Replay(load(write(tmp_path / "a.npz")))
+    for tick in range(TICKS):
+        published, sent = player.tick(tick), player.node.sender.command
+        assert published is not None and sent is not None
+        assert published[:6] == sent[:6]
+
+
+def test_a_tick_without_a_command_has_no_verdict(tmp_path: Path) -> None:
+    columns = replay(load(write(tmp_path / "a.npz", deliver_mask=np.full(TICKS, 13))))
+    assert (columns[VERDICT] == NO_VALUE).all() and not columns["published"].any()

@@ -1,8 +1,8 @@
-"""The yardstick: one cold solve of a fixed quadratic programme by OSQP.
+"""The yardstick of the ratios that ``island bench`` measures, as ``ratios.YARDSTICK`` defines it.
 
-A machine's speed drifts by a third from minute to minute, so times are compared with this solve,
-measured in the same run. Only OSQP's own clock counts (set-up, solve and polish), not what its
-Python interface adds; that makes the yardstick short and every ratio to it large.
+A machine's speed drifts by a third from minute to minute, so times are compared with a solve that
+is measured in the same run. What OSQP's Python interface adds does not count: that makes the
+yardstick short and every ratio to it large.
 """
 
 from __future__ import annotations
@@ -31,6 +31,6 @@ def problem() -> SparseProblem:
 
 
 def measure_us(problem: SparseProblem) -> float:
-    """Solve once, cold; return OSQP's own time [us]."""
+    """Solve once, cold; return one yardstick [us]."""
     info = problem.solve().info
     return float(info.setup_time + info.solve_time + info.polish_time) * 1e6

@@ -40,8 +40,11 @@ RULES = """\
 ## Limits
 
 Each is a list over the measured speed (`guard.speed_points`): linear between the points, held
-outside. Where each value comes from stands in `params/sets/island/guard.param.yaml`; what the set
-`firmware` widens, so that the guard lets the recorded runs pass, in its `island.param.yaml`.
+outside. Where each value comes from stands in `params/sets/island/guard.param.yaml`. In the set
+`firmware` no limit is as low as a command of the firmware's controllers can get, whatever their
+parameters (its `island.param.yaml` gives the reasons): there the guard refuses, and clamps nothing.
+A limit that is stricter at every speed than what bounds the controllers (`max_acc`, for example) is
+said at the start, one line each.
 
 """
 

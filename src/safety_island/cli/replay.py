@@ -12,15 +12,17 @@ from typing import TYPE_CHECKING, Any
 from safety_island.cli.options import add_json
 from safety_island.cli.parser import teach
 from safety_island.cli.progress import prepare_kernels
+from safety_island.guard import Verdict as GuardVerdict
 
 if TYPE_CHECKING:
     from safety_island.replay.compare import Verdict
+    from safety_island.replay.guard_acts import GuardActs
 
 PURPOSE = """
 Feed recorded runs of Autoware's C++ controllers through the real controller node on virtual time,
-and compare what it publishes with what was recorded. For each run: the number of ticks, the
-greatest difference in each column, the first tick that is not close enough, pass or fail. The exit
-code is 1 when a run fails.
+and compare the commands that it publishes, behind the guard, with what was recorded. For each run:
+the number of ticks, the greatest difference in each column, how many commands the guard changed or
+refused, the first tick that is not close enough, pass or fail. The exit code is 1 when a run fails.
 """
 
 
@@ -37,7 +39,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "paths", nargs="+", type=Path, metavar="FILE_OR_FOLDER", help="recorded runs (.npz)"
     )
     parser.add_argument(
-        "--csv", type=Path, metavar="DIR", help="write DIR/<scenario>__<run>.csv, tick by tick"
+        "--csv",
+        type=Path,
+        metavar="DIR",
+        help="write DIR/<scenario>__<run>.csv: every published command, and what the guard changed",
     )
     parser.add_argument(
         "--solver",
@@ -88,9 +93,22 @@ def _line(verdict: Verdict) -> str:
     loose = f" ({verdict.loose_ticks} held loosely)" if verdict.loose_ticks else ""
     word = "pass" if verdict.passed else "FAIL"
     text = f"{word}  {verdict.name}  {verdict.ticks} ticks{loose}\n      {differences}"
+    text += f"  {_guard(verdict)}"
     if verdict.exceeding is not None:
-        text += f"\n      first beyond tolerance: {verdict.exceeding}"
+        act = verdict.guard.at(verdict.exceeding.tick)
+        text += f"\n      first beyond tolerance: {verdict.exceeding}{f'; {act}' if act else ''}"
     return text
+
+
+def _guard(verdict: Verdict) -> str:
+    """What the guard did, for a person."""
+    acts = verdict.guard
+    changed, refused = (acts.count(kind) for kind in (GuardVerdict.CLAMPED, GuardVerdict.REFUSED))
+    text = f"guard: {changed} of {acts.commands} commands changed, {refused} refused"
+    if not acts.acts:
+        return text
+    limits = ", ".join(f"{name} {count}" for name, count in acts.limits().items())
+    return f"{text} ({limits}), first in tick {acts.acts[0].tick}"
 
 
 def _as_json(verdicts: list[tuple[Path, Verdict]]) -> dict[str, Any]:
@@ -101,12 +119,23 @@ def _as_json(verdicts: list[tuple[Path, Verdict]]) -> dict[str, Any]:
             "ticks": verdict.ticks,
             "loose_ticks": verdict.loose_ticks,
             "greatest_difference": _as_numbers(verdict.greatest),
+            "guard": _guard_as_json(verdict.guard),
             "first_exceeding": verdict.exceeding and _as_numbers(verdict.exceeding._asdict()),
             "passed": verdict.passed,
         }
         for path, verdict in verdicts
     ]
     return {"runs": runs, "passed": all(run["passed"] for run in runs)}
+
+
+def _guard_as_json(acts: GuardActs) -> dict[str, Any]:
+    return {
+        "commands": acts.commands,
+        "changed": acts.count(GuardVerdict.CLAMPED),
+        "refused": acts.count(GuardVerdict.REFUSED),
+        "limits": acts.limits(),
+        "first_tick": acts.acts[0].tick if acts.acts else None,
+    }
 
 
 def _as_numbers(values: dict[str, Any]) -> dict[str, Any]:

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import re
 import sys
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from enum import Enum, IntEnum
+from collections.abc import Iterable, Mapping, Sequence
+from enum import Enum
 from pathlib import Path
 from typing import Any
 
 from safety_island.cli.status.docs import member_docs, message_fields
+from safety_island.cli.status.holds import EXPLANATIONS as HOLDS
+from safety_island.cli.status.holds import MPC_EXPLANATIONS
 from safety_island.cli.status.names import GUARD_LIMITS
-from safety_island.control.status import ControllerLimit, MpcStatus
+from safety_island.control.status import ControllerLimit
 from safety_island.gate.reason import EXPLANATIONS as SAMPLE_REASONS
 from safety_island.gate.warning import EXPLANATIONS as WARNINGS
 from safety_island.life_cycle.reason import EXPLANATIONS as REASONS
@@ -25,8 +28,14 @@ INTRODUCTION = """\
 Generated from the code. To renew this page: `python -m safety_island.cli.status_page`.
 
 Every tick the island says on `/safety_island/status` what it does and why. `island status` shows
-it, `island status --json` streams it, `island status --why` says in one sentence why nothing is
-being published, or that all is well.
+it, `island status --json` streams it, `island status --why` says why nothing is being published,
+what holds a vehicle whose commands are sent, or that all is well: that only when the vehicle is
+free to drive. It looks for about a second: at the island, for what comes and goes from tick to
+tick, and at the domain, for the publishers of an input that does not come. There may be none, or
+one whose type or QoS does not match, or one that sends nothing; samples that come and are refused
+have a reason of their own. `island status --why --json` has the same text as `why`, with `flows`
+(commands are published), `free` (nothing holds the vehicle) and `held_by` (names of the table
+below); each line of `island status --json` has `held_by` as well.
 """
 STATES = "What the island lets out."
 REASON = "Why the island is in its state, and the cause that is latched (`latched_cause`)."
@@ -35,6 +44,7 @@ WARNING = "What is wrong with an input without ending the output."
 LIMITS = "What bounded or held a command in the controllers (`controller_limits`)."
 GUARD = "What bounded a command in the guard (`guard_limits`), which clamped or refused it."
 ANSWERS = "What `island arm` is answered (`arm_result`)."
+HELD = "What keeps a vehicle in ACTIVE from driving freely (`held_by`)."
 MPC = "Why the MPC did or did not give a steering angle (`mpc_status`)."
 FIELDS = """\
 ## Messages
@@ -58,8 +68,9 @@ def render() -> str:
             _section("Limits of the guard", GUARD, _explained_table("limit", GUARD_LIMITS))
         )
     sections += [
+        _section("What holds the vehicle", HELD, _held_table()),
         _section("Answers to a request to arm", ANSWERS, _plain_table(ArmResult)),
-        _section("States of the MPC", MPC, _table(["number", "name"], _names(MpcStatus))),
+        _section("States of the MPC", MPC, _explained_table("state", MPC_EXPLANATIONS)),
     ]
     messages = [f"### `{name}`\n\n{_fields(name)}\n" for name in (STATUS, INPUT_STATUS, ARM)]
     return "\n".join([INTRODUCTION, *sections, FIELDS, *messages])
@@ -83,8 +94,19 @@ def _explained_table(what: str, table: Mapping[Any, tuple[str, str]]) -> str:
     return _table(["number", what, "meaning", "what to do"], rows)
 
 
-def _names(enum: type[IntEnum]) -> Iterator[list[str]]:
-    return ([str(int(item)), f"`{item.name}`"] for item in enum)
+def _held_table() -> str:
+    rows = (
+        [f"`{hold}`", *(_cell(_FIELD.sub(_field_name, text)) for text in explanation)]
+        for hold, explanation in HOLDS.items()
+    )
+    return _table(["name", "meaning", "what to do"], rows)
+
+
+_FIELD = re.compile(r"\{(\w+)[^}]*\}")
+
+
+def _field_name(found: re.Match[str]) -> str:
+    return f"*{found[1].replace('_', ' ')}*"
 
 
 def _fields(type_name: str) -> str:

@@ -14,9 +14,6 @@ from safety_island.guard.table import Limits, SpeedTable
 FUTURE_TOLERANCE_S = 1e-3
 """A stamp may lie that far in the future: it comes from the same clock, by way of rounding."""
 
-ROLLING = 0.5
-"""Speed [m/s] above which the direction of driving cannot be changed."""
-
 STANDSTILL = 1e-9
 """Square of the speed [m^2/s^2] below which any curvature is no lateral acceleration."""
 
@@ -42,7 +39,7 @@ class Guard:
     def __init__(self, limits: GuardParams, wheel_base: float, timeout_s: float) -> None:
         """Take the limits, the wheelbase [m] and the age [s] beyond which a command is stale."""
         self._table = SpeedTable(limits)
-        self._fastest = limits.velocity
+        self._fastest, self._rolling = limits.velocity, limits.rolling_speed
         self._shortest, self._longest = limits.shortest_step, limits.longest_step
         self._wheel_base, self._timeout = wheel_base, timeout_s
         self._keeps_all = Shortcut(self._table, self._fastest, wheel_base).keeps_all
@@ -76,7 +73,7 @@ class Guard:
     ) -> Decision:
         """Hold each value against its limits, and move it to where it keeps them."""
         now, _, _, asked_angle, asked_rotation, asked_velocity, asked_push = proposal
-        turns_round = speed * asked_velocity < 0.0 and abs(speed) > ROLLING
+        turns_round = speed * asked_velocity < 0.0 and abs(speed) > self._rolling
         speed = abs(speed)
         limits = self._table.at(speed)
         distance = limits[3] if engaged else inf

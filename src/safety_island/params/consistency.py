@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, fields
 from itertools import pairwise
+from math import radians
 from typing import Any
 
 from safety_island.control.limits import MAX_DELAY_STEPS, MAX_HISTORY, MAX_SHAPE_HISTORY
@@ -182,12 +183,53 @@ def inconsistencies(values: Values) -> Iterable[tuple[Rule, str]]:
                 yield rule, text
 
 
+@dataclass(frozen=True)
+class Stricter:
+    """A limit of the guard, and the value of a controller's parameter that it should let through.
+
+    ``scale`` takes that parameter to the unit and sign of the limit.
+    """
+
+    limit: str
+    key: str
+    scale: float = 1.0
+
+    def note(self, values: Values) -> str | None:
+        """Say that the limit is below the parameter at every speed; None when it is not."""
+        limit, value = _largest(values[self.limit]), _largest(values[self.key], self.scale)
+        if limit >= value:
+            return None
+        return (
+            f"{self.limit} is {limit:g} at most, stricter than {self.key}, which allows {value:g}:"
+            " the guard clamps commands that the controllers may give"
+        )
+
+
+STRICTER = (
+    Stricter("guard.steering_angle", "max_steer_angle"),
+    Stricter("guard.steering_rate", "steer_rate_lim_dps_list_by_curvature", radians(1.0)),
+    Stricter("guard.steering_rate", "steer_rate_lim_dps_list_by_velocity", radians(1.0)),
+    Stricter("guard.acceleration", "max_acc"),
+    Stricter("guard.deceleration", "min_acc", -1.0),
+    Stricter("guard.deceleration", "stopped_acc", -1.0),
+    Stricter("guard.jerk", "max_acc_cmd_diff"),
+    Stricter("guard.brake_jerk", "max_acc_cmd_diff"),
+)
+"""What bounds the controllers' commands, beside the limit of the guard on the same quantity."""
+
+
+def _largest(value: Any, scale: float = 1.0) -> float:
+    numbers: tuple[float, ...] = value if isinstance(value, tuple) else (value,)
+    return max(number * scale for number in numbers)
+
+
 def notes(values: Values) -> list[str]:
-    """Return what a start should say once: filters that pass their input through."""
+    """Return what a start should say once: filters that do nothing, a guard that is stricter."""
     limit = nyquist_hz(values["ctrl_period"])
-    return [
+    passed_through = [
         f"{cutoff} {values[cutoff]:g} Hz is not below the Nyquist frequency of {limit:.4g} Hz:"
         " this filter passes its input through"
         for cutoff in FILTERS
         if above_nyquist(cutoff, values)
     ]
+    return passed_through + [note for item in STRICTER if (note := item.note(values))]

@@ -1,5 +1,13 @@
 """Why a value of our default set is what it is, where the sets differ."""
 
+from dataclasses import fields
+
+from safety_island.guard.params import GuardParams
+from safety_island.parameter import key_of
+
+_SAME_EVERYWHERE = ("speed_points", "shortest_step", "longest_step")
+_GUARD = [key_of(item) for item in fields(GuardParams) if item.name not in _SAME_EVERYWHERE]
+
 REASONS = {
     "autoware_release": (
         "the firmware's controllers are those of 0.40; with files of a newer release theirs are"
@@ -47,9 +55,7 @@ REASONS = {
     "life_cycle.stall_limit": "what waited meanwhile is too old",
     "gate.min_trajectory_points": "fewer cannot be followed by the MPC",
     "life_cycle.mpc_failure_time": "a steering angle that is only held is no control",
-    "guard.steering_rate": "the firmware's solver keeps no rate; ours does",
-    "guard.lateral_acceleration": "ISO 11270; the firmware's angle jumps with the trajectory",
-    "guard.lateral_jerk": "ISO 11270; the same",
+    **dict.fromkeys(_GUARD, "nothing checks the firmware's commands; ours pass the guard"),
     "correct_reverse_signs": (
         "in reverse the firmware has the sign wrong in the acceleration feedback and in the slope"
         " term that comes from the trajectory's pitch"

@@ -7,13 +7,14 @@ starts from another memory, and is held to the same until both agree again.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from safety_island.replay.check import Table
+from safety_island.replay.guard_acts import GuardActs, guard_acts
 from safety_island.replay.recording import CONTRACT_COLUMNS, Recording
 
 COMMAND_COLUMNS = CONTRACT_COLUMNS[2:]
@@ -51,9 +52,9 @@ class Verdict:
     ticks: int
     greatest: dict[str, float]
     exceeding: Exceeding | None
+    guard: GuardActs
     loose_ticks: int = 0
     """Ticks that were held to the tolerance of an unpolished solution."""
-    notes: list[str] = field(default_factory=list)
 
     @property
     def passed(self) -> bool:
@@ -62,7 +63,7 @@ class Verdict:
 
 
 def judge(run: Recording, replayed: dict[str, Table]) -> Verdict:
-    """Compare ``replayed`` (the contract's columns and is_steer_converged) with the recording."""
+    """Compare what was ``replayed`` (the columns of ``feed.replay``) with the recording."""
     differences = {name: _difference(run.output[name], replayed[name]) for name in CONTRACT_COLUMNS}
     polished = _polished(run)
     exceeding = None
@@ -77,7 +78,8 @@ def judge(run: Recording, replayed: dict[str, Table]) -> Verdict:
         tolerance = UNPOLISHED if loose else (EXACT if polished is None else POLISHED)
         exceeding = exceeding or _first(run, replayed, tick, row, tolerance, loose)
     greatest = {name: float(np.max(values)) for name, values in differences.items()}
-    return Verdict(run.name, run.ticks, greatest, exceeding, loose_ticks)
+    acts = guard_acts(replayed)
+    return Verdict(run.name, run.ticks, greatest, exceeding, acts, loose_ticks)
 
 
 def _polished(run: Recording) -> npt.NDArray[np.bool_] | None:

@@ -8,9 +8,9 @@ import numpy as np
 
 from safety_island import params
 from safety_island.control.follower import TrajectoryFollower
-from safety_island.control.records import Records
 from safety_island.dds import topics
 from safety_island.messages import inputs as codec
+from safety_island.messages.outputs import Control, decode_control
 from safety_island.messages.trajectory import encode_trajectory
 from safety_island.messages.wire import Time
 from safety_island.node import ControllerNode
@@ -18,6 +18,7 @@ from safety_island.node.memory import MemoryDomain
 from safety_island.platform.interfaces import LogConfig, LogLevel
 from safety_island.platform.sim import make
 from safety_island.replay.check import Table
+from safety_island.replay.guard_acts import GUARD_COLUMNS, LIMITS, VERDICT
 from safety_island.replay.recording import (
     ACCELERATION,
     CONTRACT_COLUMNS,
@@ -50,15 +51,23 @@ class Replay:
             topic.key: domain.publisher(topic.name, topic.type_name, topic.qos).write
             for topic in topics.INPUTS
         }
+        entry = topics.CONTROL
+        self._published = domain.subscription(entry.name, entry.type_name, entry.qos)
         # The firmware takes the operation mode as received from the beginning, and nothing else.
         start = float(run.state["t"][0]) - parameters.node.ctrl_period
         key, data = _mode(Time.from_seconds(start), _STOP, True)
         self._write[key](data)
         self.node.tick(start)
+        self._published.take_all()
 
-    def tick(self, tick: int) -> Records | None:
-        """Deliver the messages of one row and do the tick; the command, when one was published."""
-        return self.follower.command if self.node.tick(self.deliver(tick)).published else None
+    def tick(self, tick: int) -> Control | None:
+        """Deliver the messages of one row and do the tick; the command that was published, if any.
+
+        It is decoded from the bytes on ``control_cmd``: behind the guard, as a vehicle gets it.
+        """
+        self.node.tick(self.deliver(tick))
+        sample = self._published.take_newest()
+        return None if sample is None else decode_control(sample.data)
 
     def deliver(self, tick: int) -> float:
         """Move the clock to a row and deliver its messages; return its time [s]."""
@@ -111,21 +120,26 @@ def replay(
     solver: str | None = None,
     report: Callable[[int], None] | None = None,
 ) -> dict[str, Table]:
-    """Replay a run; return the contract's columns and is_steer_converged, each (ticks,).
+    """Replay a run; return the contract's columns, is_steer_converged and GUARD_COLUMNS.
 
-    A tick that published nothing holds NaN, as in the recordings. ``report`` is told each tick.
+    Each has the shape (ticks,). A tick that published nothing holds NaN in the columns of the
+    command, as in the recordings. ``report`` is told each tick.
     """
     player = Replay(run, solver)
-    columns = {name: np.full(run.ticks, np.nan) for name in CONTRACT_COLUMNS}
+    columns = {name: np.full(run.ticks, np.nan) for name in (*CONTRACT_COLUMNS, *_NOT_RECORDED)}
     columns["t"][:] = run.state["t"]
-    columns["is_steer_converged"] = np.full(run.ticks, np.nan)
     for tick in range(run.ticks):
-        command = player.tick(tick)
+        command, check = player.tick(tick), player.node.check
         columns["published"][tick] = command is not None
+        columns[VERDICT][tick], columns[LIMITS][tick] = check.verdict, check.limits
         if command is not None:
             for name in CONTRACT_COLUMNS[2:]:
-                columns[name][tick] = command[0][name]
+                columns[name][tick] = getattr(command, name)
             columns["is_steer_converged"][tick] = player.follower.trace[0].is_steer_converged
         if report is not None:
             report(tick)
     return columns
+
+
+_NOT_RECORDED = ("is_steer_converged", *GUARD_COLUMNS)
+"""Columns of a replay beside those of the contract."""

@@ -6,20 +6,26 @@ from pathlib import Path
 
 from safety_island.errors import IslandError
 from safety_island.replay.check import Table
+from safety_island.replay.guard_acts import GUARD_COLUMNS, guard_acts, names_of
 from safety_island.replay.recording import CONTRACT_COLUMNS, Recording
 
 
 def write_csv(folder: Path, run: Recording, replayed: dict[str, Table]) -> Path:
     """Write ``<scenario>__<run>.csv`` with full precision; return its path.
 
-    Raises IslandError when the folder cannot be written.
+    The columns are those of the contract and, for a command that the guard changed or refused, the
+    guard's verdict and the limits that acted. Raises IslandError when the folder cannot be written.
     """
     path = folder / f"{run.scenario}__{run.path.stem}.csv"
     columns = [replayed[name] for name in CONTRACT_COLUMNS]
-    lines = [",".join(CONTRACT_COLUMNS)]
-    for row in zip(*columns, strict=True):
+    acts = {act.tick: act for act in guard_acts(replayed).acts}
+    lines = [",".join((*CONTRACT_COLUMNS, *GUARD_COLUMNS))]
+    for tick, row in enumerate(zip(*columns, strict=True)):
         t, published, *command = (float(value) for value in row)
-        lines.append(",".join([repr(t), str(int(published)), *(repr(value) for value in command)]))
+        words = [repr(t), str(int(published)), *(repr(value) for value in command), "", ""]
+        if act := acts.get(tick):
+            words[-2:] = act.verdict.name, " ".join(names_of(act.limits))
+        lines.append(",".join(words))
     try:
         folder.mkdir(parents=True, exist_ok=True)
         path.write_text("\n".join(lines) + "\n")

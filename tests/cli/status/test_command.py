@@ -43,7 +43,8 @@ def test_why_when_nothing_is_published(domain_id: int, capsys: Capture) -> None:
         assert main(words(domain_id, "--why", "--json", *LONG)) == 1
     sentence, line = capsys.readouterr().out.splitlines()
     assert sentence.startswith("Nothing is being published: odometry is older than its limit")
-    assert json.loads(line) == {"event": "why", "flows": False, "why": sentence}
+    expected = {"event": "why", "flows": False, "free": False, "held_by": [], "why": sentence}
+    assert json.loads(line) == expected
 
 
 def test_once_as_a_line_and_as_json(domain_id: int, capsys: Capture) -> None:

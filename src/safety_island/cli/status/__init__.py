@@ -27,7 +27,10 @@ its status message tells every tick. A terminal gets a live view, anything else 
 docs/status.md explains each state and reason.
 """,
         ("island status", "watch the island on domain 2 of this machine"),
-        ("island status --why", "one sentence: why nothing is published, or that all is well"),
+        (
+            "island status --why",
+            "why nothing is published, what holds the vehicle, or that all is well",
+        ),
         ("island status --interface eth0 --json", "every status as a JSON line, from a network"),
         ("island status --once", "one status, then end"),
     )
@@ -35,8 +38,9 @@ docs/status.md explains each state and reason.
     kind.add_argument(
         "--why",
         action="store_true",
-        help="say in one sentence why nothing is published, or that all is well; the exit code is "
-        "0 when commands flow, 1 when not",
+        help="say why nothing is published, or what holds the vehicle, and what to do; that all is"
+        " well only when it is free to drive. Looks for a second at the island and at the"
+        " publishers of its inputs; the exit code is 0 when commands flow, 1 when not",
     )
     kind.add_argument("--once", action="store_true", help="show one status and end")
     options.add_domain(parser, 2, "the safety island")
@@ -63,13 +67,12 @@ def execute(arguments: argparse.Namespace) -> int:
 
 
 def _tell_why(arguments: argparse.Namespace, reader: StatusReader) -> int:
-    from safety_island.cli.status.why import flows, why
+    from safety_island.cli.status.why import why_values
 
-    status = reader.first(arguments.timeout)
-    sentence, well = why(status), flows(status)
-    values = {"event": "why", "flows": well, "why": sentence}
-    print(json.dumps(values) if arguments.json else sentence)
-    return 0 if well else 1
+    *before, status = reader.recent(arguments.timeout)
+    values = why_values(status, before, reader.publishers())
+    print(json.dumps({"event": "why", **values}) if arguments.json else values["why"])
+    return 0 if values["flows"] else 1
 
 
 def _watch(arguments: argparse.Namespace, reader: StatusReader, show: Show) -> None:

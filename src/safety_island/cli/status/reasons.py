@@ -19,7 +19,7 @@ def explained(status: Status, number: int) -> Explanation:
     other = "the topic of the command" if is_identity else "an input"
     subject = input_name(status.subject) or other
     found = EXPLANATIONS[Reason(number)]
-    return Explanation(*(_plain(text).replace("{subject}", subject) for text in found))
+    return Explanation(*(plain(text).replace("{subject}", subject) for text in found))
 
 
 def explained_refusal(number: int) -> tuple[str, str]:
@@ -27,8 +27,9 @@ def explained_refusal(number: int) -> tuple[str, str]:
     if number not in list(SampleReason):
         return f"reason {number}, unknown to this version", _NEWER
     meaning, action = SAMPLE_REASONS[SampleReason(number)]
-    return _plain(meaning), _plain(action)
+    return plain(meaning), plain(action)
 
 
-def _plain(text: str) -> str:
+def plain(text: str) -> str:
+    """Return a text of a table as a terminal shows it."""
     return text.replace("`", "'")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Callable
 
+from safety_island.cli.status.domain import Domain
 from safety_island.dds.config import DdsConfig
 from safety_island.dds.participant import Participant
 from safety_island.dds.topics import STATUS
@@ -16,6 +17,9 @@ from safety_island.platform.posix.clock import PosixClock
 
 SLICE_S = 0.1
 """Longest wait at a time, so that a signal is heard."""
+
+WATCH_S = 1.0
+"""What comes and goes from tick to tick is looked for in that many seconds."""
 
 
 class StatusReader:
@@ -64,6 +68,21 @@ class StatusReader:
         if status is None:
             raise self.nothing(timeout_s)
         return status
+
+    def recent(self, timeout_s: float) -> list[Status]:
+        """Return the first status that comes, and those of the next WATCH_S, oldest first.
+
+        Meanwhile discovery finds the publishers of the domain. Raises IslandError as ``first``.
+        """
+        found = [self.first(timeout_s)]
+        end = self.now() + WATCH_S
+        while (left := end - self.now()) > 0.0:
+            found += self.take(left)
+        return found
+
+    def publishers(self) -> Domain:
+        """Return what discovery knows of the publishers of the inputs."""
+        return Domain(self.participant, self.where)
 
     def nothing(self, timeout_s: float) -> IslandError:
         """Return the error for an island that is not heard."""

@@ -12,6 +12,7 @@ from rich.live import Live
 from safety_island.cli.status.text import plain_line
 from safety_island.cli.status.values import status_values
 from safety_island.cli.status.view import draw
+from safety_island.cli.status.why import held_by
 from safety_island.messages.status_fields import Status
 
 DRAW_EVERY_S = 0.1
@@ -86,5 +87,6 @@ class JsonShow(PlainShow):
     def __call__(self, statuses: list[Status], now: float) -> None:
         """Print all."""
         for status in statuses:
-            line = json.dumps({"event": "status", **status_values(status)}, allow_nan=False)
+            values = status_values(status) | {"held_by": held_by([status])}
+            line = json.dumps({"event": "status", **values}, allow_nan=False)
             print(line, file=self._stream, flush=True)

@@ -12,7 +12,7 @@ from safety_island.cli.status.names import (
     optional_name,
     verdict_of,
 )
-from safety_island.cli.status.why import flows, others, why
+from safety_island.cli.status.why import flows, held_by, others, why
 from safety_island.control.status import ControllerLimit, LongitudinalState, Mode, MpcStatus
 from safety_island.life_cycle.state import State
 from safety_island.messages.arm import ArmResult
@@ -114,6 +114,7 @@ def plain_line(status: Status) -> str:
     if not flows(status):
         return f"{head}  {why(status)}"
     alarm = f"  {others(status)}" if status.other_control_writers else ""
+    alarm += "".join(f"  held: {name}" for name in held_by([status]))
     return (
         f"{head}  {command(status)}  lateral {status.lateral_error:+.3f} m"
         f"  {duration(status.tick_time)}{alarm}"

@@ -9,7 +9,7 @@ from rich.text import Text
 
 from safety_island.cli.status import text
 from safety_island.cli.status.names import flags_of, input_name, name_of
-from safety_island.cli.status.why import flows, why
+from safety_island.cli.status.why import is_free, why
 from safety_island.gate.reason import SampleReason
 from safety_island.gate.warning import InputWarning
 from safety_island.life_cycle.state import State
@@ -48,7 +48,7 @@ def _head(status: Status, age_s: float) -> Text:
         head.append("degraded  ", style="bold yellow")
     if age_s > SILENT_AFTER_S:
         return head.append(f"no status for {age_s:.1f} s: what stands here is old", "bold red")
-    return head.append(why(status), style="" if flows(status) else "yellow")
+    return head.append(why(status), style="" if is_free([status]) else "yellow")
 
 
 def _inputs(status: Status) -> Table:
