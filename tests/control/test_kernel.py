@@ -88,9 +88,17 @@ def test_only_what_the_kernel_can_take_is_bound(index: int, argument: Any) -> No
 def test_a_bound_kernel_does_the_same() -> None:
     params, points, count, start = good()
     check = check_trajectory.bind(params, points)
-    assert check(count, start) == check_trajectory.call(params, points, count, start) == Refusal.ACCEPTED
+    assert (
+        check(count, start)
+        == check_trajectory.call(params, points, count, start)
+        == Refusal.ACCEPTED
+    )
     points["x"][3] = np.nan
-    assert check(count, start) == check_trajectory.call(params, points, count, start) == Refusal.NOT_FINITE
+    assert (
+        check(count, start)
+        == check_trajectory.call(params, points, count, start)
+        == Refusal.NOT_FINITE
+    )
 
 
 @needs_jit

@@ -11,7 +11,6 @@ from safety_island.control.limits import MAX_HISTORY
 from safety_island.control.longitudinal_history import (
     predict_after_delay,
     store_command,
-    store_speed_first,
     store_speed_last,
 )
 from safety_island.control.longitudinal_state import LONGITUDINAL_STATE

@@ -84,6 +84,11 @@ class FakeFollower:
     def offer_acceleration(self, ax: float) -> Refusal:
         return self._offer("acceleration", ax)
 
+    def offer_steering_offset(self, offset: float) -> Refusal:
+        """Accept anything."""
+        self.steering_offset = offset
+        return Refusal.ACCEPTED
+
     def offer_operation_mode(self, mode: int, enabled: bool) -> Refusal:
         return self._offer("operation mode", mode, enabled)
 

@@ -118,7 +118,9 @@ def test_without_a_set_the_files_must_be_complete(tmp_path: Path) -> None:
 
 
 def test_an_unknown_set_is_refused_with_the_list() -> None:
-    with pytest.raises(ConfigurationError, match=r"firmware, autoware-0.40, .*default; the nearest"):
+    with pytest.raises(
+        ConfigurationError, match=r"firmware, autoware-0.40, .*default; the nearest"
+    ):
         load_set("firmwear")
     with pytest.raises(ConfigurationError, match=r"'../default' is not shipped"):
         load_set("../default")

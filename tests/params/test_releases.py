@@ -38,12 +38,14 @@ def autowares(release: str, folder: Path) -> list[Path]:
 def test_the_files_of_a_release_are_recognised(tmp_path: Path, release: str) -> None:
     loaded = read(autowares(release, tmp_path))
     assert loaded.parameters.node.autoware_release == release
-    assert loaded.ignored == loaded.translated == ()
+    assert not loaded.ignored and not loaded.translated
     assert loaded.release.startswith(f"rules of Autoware {release} (by the files: ")
 
 
 @pytest.mark.parametrize("file", FILES[1:])
-@pytest.mark.parametrize(("release", "found"), [("0.40", "0.40"), ("0.50", "0.50"), ("0.53", "0.52")])
+@pytest.mark.parametrize(
+    ("release", "found"), [("0.40", "0.40"), ("0.50", "0.50"), ("0.53", "0.52")]
+)
 def test_one_controllers_file_is_enough(
     tmp_path: Path, release: str, found: str, file: str
 ) -> None:
@@ -86,7 +88,9 @@ def test_a_set_below_keeps_its_release(tmp_path: Path) -> None:
 
 def test_what_decided_is_said(tmp_path: Path) -> None:
     path = parameter_file(tmp_path, "kp: 1.0\nff_scale_min: 0.5")
-    expected = f"rules of Autoware 0.52 (by the files: 'ff_scale_min' is there since 0.51, {path}:4)"
+    expected = (
+        f"rules of Autoware 0.52 (by the files: 'ff_scale_min' is there since 0.51, {path}:4)"
+    )
     assert read([path]).release == expected
 
 
@@ -164,7 +168,9 @@ def test_a_key_of_no_release_is_refused(tmp_path: Path, key: str) -> None:
 def test_tables_of_many_speeds_and_negative_overhangs_load(tmp_path: Path) -> None:
     speeds = [1.4 * i for i in range(13)]
     rates = [18.0 - i for i in range(13)]
-    body = f"steer_rate_lim_dps_list_by_velocity: {rates}\nvelocity_list_for_steer_rate_lim: {speeds}"
+    body = (
+        f"steer_rate_lim_dps_list_by_velocity: {rates}\nvelocity_list_for_steer_rate_lim: {speeds}"
+    )
     parameters = read([parameter_file(tmp_path, f"{body}\nrear_overhang: -0.3")]).parameters
     assert parameters.lateral.velocity_list_for_steer_rate_lim == tuple(speeds)
     assert parameters.vehicle.rear_overhang == -0.3

@@ -11,8 +11,8 @@ import yaml
 
 from safety_island.params import SETS, from_mapping, load_set, read, with_period
 from safety_island.params.no_effect import NO_EFFECT
-from safety_island.params.releases import SPANS
 from safety_island.params.reasons import REASONS
+from safety_island.params.releases import SPANS
 from safety_island.params.schema import KNOWN, values_of
 from safety_island.params.sets import EXCEPTIONS, FILES, OWN
 from tests.params.files import OWN_KEYS, shipped_text

@@ -7,8 +7,8 @@ import math
 
 from safety_island.control.kernel import entry, kernel
 from safety_island.control.limits import EXTENSION_POINTS, MAX_POINTS, MAX_REFERENCE
-from safety_island.control.records import PARAMS, POINT
 from safety_island.control.points import time_of
+from safety_island.control.records import PARAMS, POINT
 from safety_island.control.status import ReferenceMode, Refusal
 
 MAX_POSITION = 1e7
@@ -119,8 +119,8 @@ def check_trajectory(params, points, n, start):
     """Refusal of a received trajectory ``points[:n]``; nearly unit orientations become units.
 
     ``start`` [s] is the time_from_start of the first point. In the temporal mode times must ascend,
-    and points may coincide: the vehicle waits there. A trajectory leads forward or backward, not both, and so do its speeds: points in another order
-    than that of driving would lead to and fro.
+    and points may coincide: the vehicle waits there. A trajectory leads forward or backward, not
+    both, and so do its speeds: points in another order than that of driving would lead to and fro.
     """
     if n < _FEWEST_POINTS:
         return _TOO_FEW

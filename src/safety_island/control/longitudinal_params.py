@@ -78,7 +78,10 @@ class LongitudinalParams:
         "s", "Time under control before it is integrated at low speed.", 0.0, 60.0
     )
     ff_scale_min: float = parameter(
-        "", "Smallest factor on the trajectory's acceleration, by speed over target speed.", 0.0, 1.0
+        "",
+        "Smallest factor on the trajectory's acceleration, by speed over target speed.",
+        0.0,
+        1.0,
     )
     ff_scale_max: float = parameter("", "Largest factor on it.", 1.0, 10.0)
     enable_brake_keeping_before_stop: bool = switch("Do not let go of the brake before a stop.")
@@ -153,6 +156,6 @@ class LongitudinalParams:
         ),
     )
     correct_reverse_signs: bool = switch(
-        "Use the right signs of acceleration feedback and slope in reverse, which Autoware has since"
+        "Use the right signs of acceleration feedback and slope in reverse, as Autoware does since"
         " 0.46 and 0.53."
     )

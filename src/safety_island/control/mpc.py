@@ -86,9 +86,7 @@ def _locate_by_time(params, inputs, lat, trace, time):
     a = max(i - 1, 0)
     x = between(lat.rx[a], lat.rx[i], part)
     y = between(lat.ry[a], lat.ry[i], part)
-    path_yaw = normalize_angle(
-        lat.ryaw[a] + part * normalize_angle(lat.ryaw[i] - lat.ryaw[a])
-    )
+    path_yaw = normalize_angle(lat.ryaw[a] + part * normalize_angle(lat.ryaw[i] - lat.ryaw[a]))
     status = _set_errors(params, inputs, lat, trace, x, y, yaw, path_yaw)
     trace.nearest_idx = i
     return status

@@ -51,8 +51,7 @@ def insert_point(points, n, at, point):
 
 @kernel
 def insert_plainly(points, n, at, point):
-    """Insert ``point`` before index ``at``, whatever stands there; return how many there are now.
-    """
+    """Insert ``point`` before index ``at``, also on top of another; return how many there are."""
     for i in range(n, at, -1):
         points[i] = points[i - 1]
     points[at] = point

@@ -8,8 +8,7 @@ from safety_island.control.kernel import kernel
 
 @kernel
 def time_of(points, i, start):
-    """time_from_start [s] of point ``i``; each record holds that of the next, ``start`` the first's.
-    """
+    """time_from_start [s] of point ``i``: each record holds that of the next point."""
     if i == 0:
         return start
     return points[i - 1].sec + points[i - 1].nanosec * 1e-9

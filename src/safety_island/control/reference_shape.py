@@ -9,7 +9,6 @@ from safety_island.control.geometry import normalize_angle
 from safety_island.control.kernel import kernel
 from safety_island.control.reference_positions import ensure
 
-
 TOO_CLOSE = 1e-3
 """Points of the reference nearer than this [m] give no direction and no curvature."""
 

@@ -1,8 +1,8 @@
 """The reference path of the temporal mode: the points as received, each at the time it is due.
 
-Autoware since 0.53 (``trajectory_reference_mode: temporal``): the clock says where the vehicle should
-be, not its position. All of the reference depends on the trajectory alone, so it is worked out once
-for each one that is accepted.
+Autoware since 0.53 (``trajectory_reference_mode: temporal``): the clock says where the vehicle
+should be, not its position. All of the reference depends on the trajectory alone, so it is computed
+once for each one that is accepted.
 """
 
 import math
@@ -109,8 +109,8 @@ def _fill_yaw(lat, n):
 def _fill_curvature(params, lat, n, reach, out):
     """Fill the curvature [1/m] of each point by a detour over points at equal distances.
 
-    A spline through the distinct points is sampled every ``traj_resample_dist``; the curvature there
-    is interpolated at the points. A point that coincides with the one before it gets 0.
+    A spline through the distinct points is sampled every ``traj_resample_dist``; the curvature of
+    the samples is interpolated at the points. A point that coincides with the one before it gets 0.
     """
     for i in range(n):
         out[i] = 0.0

@@ -1,8 +1,8 @@
 """What changed in Autoware's trajectory follower from release to release, as records of rules.
 
 One table holds it: each release names the rules that it changed, and takes the rest from the one
-before. The rules of a release become columns of ``PARAMS``; a kernel asks for a rule by its name and
-knows no release.
+before. The rules of a release become columns of ``PARAMS``; a kernel asks for a rule by its name
+and knows no release.
 """
 
 from __future__ import annotations

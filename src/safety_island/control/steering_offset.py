@@ -7,7 +7,6 @@ from safety_island.control.geometry import clip
 from safety_island.control.kernel import kernel
 from safety_island.control.limits import MAX_OFFSET_SAMPLES
 
-
 _ARRIVED = 1e-4
 """Distance [rad] from its target at which the filtered offset counts as there."""
 

@@ -51,15 +51,15 @@ class NodeParams:
     )
     cyclic_message_timeout_thr_sec: float = parameter(
         "s",
-        "Age of the trajectory from which on the diagnostic cyclic_message_timeout is an error (since"
-        " 0.51); it ends no output.",
+        "Age of the trajectory beyond which the diagnostic cyclic_message_timeout is an error"
+        " (since 0.51); it ends no output.",
         0.01,
         60.0,
     )
     autoware_release: str = parameter(
         "",
-        "Release of Autoware whose rules the controllers follow; files of Autoware decide it by their"
-        " keys, unless it is given.",
+        "Release of Autoware whose rules the controllers follow; unless it is given, the keys of"
+        " Autoware's files decide it.",
         choices=RELEASES,
     )
     enable_deviation_checks: bool = switch(
@@ -68,8 +68,8 @@ class NodeParams:
     )
     trajectory_reference_mode: str = parameter(
         "",
-        "Where the vehicle should be now: at the nearest place of the trajectory (spatial), or where"
-        " the clock says (temporal, Autoware 0.53).",
+        "Where the vehicle should be now: at the nearest place of the trajectory (spatial), or"
+        " where the clock says (temporal, Autoware 0.53).",
         choices=("spatial", "temporal"),
     )
     lateral_controller_mode: str = parameter("", "Lateral controller.", choices=("mpc",))

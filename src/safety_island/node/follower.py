@@ -57,6 +57,9 @@ class Follower(InputFollower, Protocol):
     def allow_control(self, allowed: bool) -> None:
         """Say whether commands are followed; if not, the controllers run as in manual mode."""
 
+    def offer_steering_offset(self, offset: float) -> Refusal:
+        """Offer the offset of the steering sensor [rad]; no tick waits for one."""
+
     def is_ready(self) -> bool:
         """Whether both controllers can run."""
 

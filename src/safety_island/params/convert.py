@@ -9,7 +9,6 @@ from safety_island.control.limits import MAX_RATE_TABLE
 from safety_island.params.scalars import found
 from safety_island.params.schema import KNOWN, Known
 
-
 _LIKELY = 0.8
 """Likeness of a long key and its misspelt form; less is a likeness of letters, not of meaning."""
 
@@ -60,6 +59,6 @@ def nearest(key: str, keys: tuple[str, ...] = tuple(KNOWN)) -> str:
 
 
 def _likely(name: str, key: str) -> float:
-    """Likeness from which on one is the other misspelt: a letter in five, or one of a short name."""
+    """Likeness from which on one is the other misspelt: one letter in five, or in a short name."""
     shortest = min(len(name), len(key))
     return min(_LIKELY, (shortest - 1) / shortest) if shortest > 1 else 1.0

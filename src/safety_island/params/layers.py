@@ -13,8 +13,8 @@ from safety_island.params.consistency import Rule, inconsistencies
 from safety_island.params.convert import NotAllowedError, convert, nearest
 from safety_island.params.no_effect import NoEffect, no_effect
 from safety_island.params.problem import Place, Problem
-from safety_island.params.scalars import found, shown
 from safety_island.params.releases import FOREIGN, FORMER, RELEASE, SPANS, Former, decide
+from safety_island.params.scalars import found, shown
 from safety_island.params.schema import KNOWN
 from safety_island.params.sets import file_of_key, sources_of
 from safety_island.params.source import Source, read_source

@@ -194,7 +194,7 @@ FOREIGN: dict[str, str] = dict.fromkeys(
         "velocity_lookahead_blend_weight",
         "enable_emergency_exit_without_stop",
     ),
-    "belongs to branches of TIER IV, to no release of Autoware; take it out, or the controllers would"
-    " not do what the file says",
+    "belongs to branches of TIER IV, to no release of Autoware; take it out: the controllers do not"
+    " have what it sets",
 )
 """Keys that would change the controllers and are in no release, with what to say."""

@@ -17,6 +17,9 @@ LATEST = 2.0**31
 POINT_COLUMNS = 13
 """Columns of a trajectory point in a recording; in a message those from 7 on are float32."""
 
+TIME_COLUMN = POINT_COLUMNS
+"""A further column that a recording may have: time_from_start [s]."""
+
 _LARGEST_WHOLE = 2.0**53
 
 
