@@ -72,7 +72,7 @@ class FakeFollower:
             self.absent.remove(name)
         return self.refusal
 
-    def offer_incoming(self, n: int, stamp: float) -> Refusal:
+    def offer_incoming(self, n: int, stamp: float, start: float = 0.0) -> Refusal:
         return self._offer("trajectory", self.incoming["x"][:n].tolist(), stamp)
 
     def offer_odometry(self, *values: float) -> Refusal:

@@ -15,8 +15,11 @@ class InputFollower(Protocol):
     def incoming(self) -> Records:
         """Memory of POINT records that the next trajectory is decoded into."""
 
-    def offer_incoming(self, n: int, stamp: float) -> Refusal:
-        """Offer the first ``n`` points of ``incoming`` and their header stamp [s]."""
+    def offer_incoming(self, n: int, stamp: float, start: float = 0.0) -> Refusal:
+        """Offer the first ``n`` points of ``incoming`` and their header stamp [s].
+
+        ``start`` [s] is the time_from_start of the first point.
+        """
 
     def offer_odometry(
         self,
