@@ -137,6 +137,49 @@ def test_revision_of_a_board_comes_after_the_board(places: Places) -> None:
     assert setting(found, "CAN_DEVICE") == ("mock", origin)
 
 
+FIRMWARE = """
+CPP STD_CPP17 REQUIRES_FULL_LIBCPP GLIBCXX_LIBCPP NEWLIB_LIBC POSIX_API PTHREAD_IPC POSIX_THREADS
+MAX_PTHREAD_COUNT DYNAMIC_THREAD EVENTFD MAIN_STACK_SIZE HEAP_MEM_POOL_SIZE ISR_STACK_SIZE FPU SMP
+MP_MAX_NUM_CPUS TIMEOUT_64BIT SYS_CLOCK_TICKS_PER_SEC NETWORKING NET_IPV4 NET_IPV6 NET_UDP NET_TCP
+NET_SOCKETS NET_DHCPV4 NET_IF_MAX_IPV4_COUNT NET_PKT_RX_COUNT NET_BUF_TX_COUNT NET_RX_STACK_SIZE
+NET_MGMT_EVENT_STACK_SIZE NET_L2_ETHERNET NET_STATISTICS NET_SHELL DNS_RESOLVER SNTP SHELL LOG
+LOG_MODE_MINIMAL PRINTK CONSOLE UART_CONSOLE SERIAL ASSERT DEBUG THREAD_NAME INIT_STACKS MDIO
+MDIO_INIT_PRIORITY PHY_INIT_PRIORITY ETH_INIT_PRIORITY CHECK_INIT_PRIORITIES TEST_RANDOM_GENERATOR
+ETH_NXP_S32_RX_THREAD_STACK_SIZE ENTROPY_GENERATOR MBEDTLS CAN_LOOPBACK ZVFS_OPEN_MAX
+"""
+
+
+def test_zephyrs_own_symbols_are_one_note(places: Places) -> None:
+    lines = [f"CONFIG_{name}=y" for name in FIRMWARE.split()]
+    own = write(places, "prj.conf", "CONFIG_LOG_LEVEL=2", *lines, "# CONFIG_NET_TCP is not set")
+    found = resolve("posix", [own], (), places)
+    assert setting(found, "LOG_LEVEL") == (2, "prj.conf:1")
+    count = len(lines)
+    assert found.notes == (
+        f"prj.conf: {count} symbols are Zephyr's own, without effect: CONFIG_CPP,"
+        f" CONFIG_STD_CPP17, CONFIG_REQUIRES_FULL_LIBCPP and {count - 3} more",
+    )
+
+
+def test_a_mistake_beside_zephyrs_symbols_is_still_one(places: Places) -> None:
+    own = write(places, "prj.conf", "CONFIG_CPP=y", "CONFIG_THREAD_STACK_SIZ=65536")
+    (told,) = mistakes(places, own)
+    assert told.startswith("prj.conf:2: unknown symbol CONFIG_THREAD_STACK_SIZ; did you mean")
+
+
+def test_zephyrs_symbols_are_not_what_a_user_types(places: Places) -> None:
+    (told,) = mistakes(places, overrides=("POSIX_API=y",))
+    assert "unknown symbol CONFIG_POSIX_API" in told
+
+
+@pytest.mark.parametrize("bom", [b"", b"\xef\xbb\xbf"])
+@pytest.mark.parametrize("end", [b"", b"\n", b"\r\n", b"   \r\n"])
+def test_a_file_of_any_editor_is_read(places: Places, bom: bytes, end: bytes) -> None:
+    own = write(places, "own.conf")
+    own.write_bytes(bom + b"CONFIG_LOG_LEVEL=2" + end)
+    assert setting(resolve("posix", [own], (), places), "LOG_LEVEL") == (2, "own.conf:1")
+
+
 @pytest.mark.parametrize("row", TARGETS, ids=lambda row: row.name)
 def test_result_is_that_of_kconfiglib_alone(row: Target, places: Places) -> None:
     """The same files, loaded one after the other as Zephyr's script does."""
@@ -158,7 +201,12 @@ def test_result_is_that_of_kconfiglib_alone(row: Target, places: Places) -> None
     ("line", "told"),
     [
         ("CONFIG_LOGLEVEL=2", "unknown symbol CONFIG_LOGLEVEL; did you mean CONFIG_LOG_LEVEL?"),
-        ("CONFIG_POSIX_API=y", "unknown symbol CONFIG_POSIX_API; see 'island config show'"),
+        ("CONFIG_NOSUCH=y", "unknown symbol CONFIG_NOSUCH; see 'island config show'"),
+        (
+            "CONFIG_NET_IFACE1_ADR=2",
+            "unknown symbol CONFIG_NET_IFACE1_ADR; did you mean CONFIG_NET_",
+        ),
+        ("CONFIG_LOG_LEVL=2", "unknown symbol CONFIG_LOG_LEVL; did you mean CONFIG_LOG_LEVEL?"),
         ("CONFIG_CONTROL_CMD_OUTPUT_MODE=y", "CONFIG_CONTROL_CMD_OUTPUT_MODE is a choice: set one"),
         ("CONFIG_CAN=y", "CONFIG_CAN cannot be set: it follows from CONFIG_CONTROL_CMD_OUTPUT_CAN"),
         ("CONFIG_CONTROL_CMD_DDS_OUTPUT=n", "CONFIG_CONTROL_CMD_DDS_OUTPUT cannot be set"),

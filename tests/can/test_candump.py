@@ -27,14 +27,20 @@ def test_lines_as_candump_writes_them() -> None:
 @pytest.mark.parametrize(
     ("line", "entry"),
     [
-        ("(12.345678) can0 100#0102", LogEntry(12.345678, CanFrame(0x100, b"\x01\x02"))),
-        ("  (12.5)  can0   7Ff#aB  R\n", LogEntry(12.5, CanFrame(0x7FF, b"\xab"))),
-        ("(12.5) can0 100# T", LogEntry(12.5, CanFrame(0x100, b""))),
-        ("(12.5) can0 00000100#01", LogEntry(12.5, None)),
-        ("(12.5) can0 100#R", LogEntry(12.5, None)),
-        ("(12.5) can0 100#R8", LogEntry(12.5, None)),
-        ("(12.5) can0 100##101020304", LogEntry(12.5, None)),
-        ("(12.5) can0 20000040#0000000000000000", LogEntry(12.5, None, is_error=True)),
+        (
+            "(12.345678) can0 100#0102",
+            LogEntry(12.345678, CanFrame(0x100, b"\x01\x02"), channel="can0"),
+        ),
+        ("  (12.5)  can0   7Ff#aB  R\n", LogEntry(12.5, CanFrame(0x7FF, b"\xab"), channel="can0")),
+        ("(12.5) can0 100# T", LogEntry(12.5, CanFrame(0x100, b""), channel="can0")),
+        ("(12.5) can0 00000100#01", LogEntry(12.5, None, channel="can0")),
+        ("(12.5) can0 100#R", LogEntry(12.5, None, channel="can0")),
+        ("(12.5) can0 100#R8", LogEntry(12.5, None, channel="can0")),
+        ("(12.5) can0 100##101020304", LogEntry(12.5, None, channel="can0")),
+        (
+            "(12.5) can0 20000040#0000000000000000",
+            LogEntry(12.5, None, is_error=True, channel="can0"),
+        ),
     ],
 )
 def test_lines_that_are_read(line: str, entry: LogEntry) -> None:

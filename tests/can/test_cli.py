@@ -168,13 +168,72 @@ def test_monitor_as_json(log: Path, capsys: Capture) -> None:
     assert "decoded" not in json.loads(capsys.readouterr().out)
 
 
-def test_monitor_says_which_line_is_garbled(log: Path, capsys: Capture) -> None:
+def test_monitor_says_which_line_is_left_out(log: Path, capsys: Capture) -> None:
     log.write_text(log.read_text() + "what is this\n")
-    assert island("monitor", str(log), "--json") == 1
+    assert island("monitor", str(log), "--json") == 0
     out, error = capsys.readouterr()
-    assert out == ""
-    assert error.startswith(f"island: error: {log}:10: found 'what is this', expected a line")
-    assert error.count("\n") == 1
+    note = f"{log}:10: found 'what is this'; 1 line is not of this log and left out"
+    assert json.loads(out)["notes"] == [note]
+    assert json.loads(out)["commands"]["count"] == 3
+    assert error == f"island: {note}\n"
+
+
+def test_monitor_reports_what_came_before_a_torn_line(log: Path, capsys: Capture) -> None:
+    log.write_text(log.read_text()[:-9])
+    assert island("monitor", str(log), "--json") == 0
+    out, error = capsys.readouterr()
+    assert json.loads(out)["commands"]["count"] == 2
+    assert error.startswith(
+        f"island: {log}:9: the last line is torn: '(1700000000.300000) can0 102#"
+    )
+
+
+def two_channels(log: Path) -> None:
+    lines = log.read_text().splitlines(keepends=True)
+    log.write_text("".join(line + line.replace("can0", "can1") for line in lines))
+
+
+@pytest.mark.parametrize("form", [[], ["--json"], ["--summary"]])
+def test_monitor_does_not_mix_the_commands_of_two_channels(
+    form: list[str], log: Path, capsys: Capture
+) -> None:
+    two_channels(log)
+    assert island("monitor", str(log), *form) == 2
+    assert capsys.readouterr().err == (
+        f"island: error: {log}: commands are on 2 channels, can0 (9 frames), can1 (9 frames); "
+        "choose one with --channel\n"
+    )
+
+
+def test_monitor_takes_the_channel_that_was_chosen(log: Path, capsys: Capture) -> None:
+    two_channels(log)
+    assert island("monitor", str(log), "--json", "--channel", "can1") == 0
+    assert json.loads(capsys.readouterr().out)["commands"]["count"] == 3
+    assert island("monitor", str(log), "--channel", "can7") == 2
+    assert capsys.readouterr().err == (
+        f"island: error: {log}: no channel 'can7', found can0 (9 frames), can1 (9 frames)\n"
+    )
+    assert island("monitor", "--channel", "can7") == 2
+    assert "a live bus is one channel" in capsys.readouterr().err
+
+
+def test_another_channel_without_commands_is_just_other_frames(log: Path, capsys: Capture) -> None:
+    log.write_text(log.read_text() + "(1700000000.310000) can1 555#00\n")
+    assert island("monitor", str(log), "--json") == 0
+    found = json.loads(capsys.readouterr().out)
+    assert (found["commands"]["count"], found["other_frames"]) == (3, 1)
+
+
+@pytest.mark.parametrize("form", [[], ["--json"]])
+def test_monitor_of_a_bus_that_falls_silent_alarms(form: list[str], capsys: Capture) -> None:
+    """The bus is silent from its start on: the first frame never comes."""
+    words = ("monitor", "--can", "virtual:quiet", "--duration", "0.7", *form)
+    assert island(*words) == 1
+    last = capsys.readouterr().out
+    assert "LOST: no command has come for 0." in last
+    assert "0 losses" not in last
+    if form:
+        assert json.loads(last.splitlines()[-1])["commands"]["losses"] == 1
 
 
 def test_monitor_without_its_file(capsys: Capture) -> None:
@@ -223,7 +282,8 @@ class Island(threading.Thread):
 def test_monitor_watches_a_live_bus(form: list[str], capsys: Capture) -> None:
     sender = Island()
     sender.start()
-    found = island("monitor", "--can", "virtual:live", "--duration", "1", *form)
+    # A busy machine may keep the sender for some of its own periods.
+    found = island("monitor", "--can", "virtual:live", "--duration", "1", "--period", "1", *form)
     sender.stop.set()
     sender.join()
     assert found == 0

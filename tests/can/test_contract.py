@@ -12,6 +12,7 @@ import pytest
 
 from safety_island.can.backends import new_link
 from safety_island.can.bus import BusEvent, BusLink, Delivery, EventKind
+from safety_island.can.frames import WATCHED_IDS
 from safety_island.platform.interfaces import CanFrame, CanResult
 from tests.can.peers import PEERS, Peer, open_peer
 from tests.can.rig import triple, until
@@ -70,6 +71,24 @@ def test_a_foreign_command_frame_is_told_and_others_are_not(link: BusLink, peer:
     assert [(event.kind, event.arbitration_id) for event in found] == [
         (EventKind.FOREIGN_COMMAND, FOREIGN.arbitration_id)
     ]
+
+
+@pytest.mark.parametrize("peer", PEERS, indirect=True)
+@pytest.mark.parametrize("arbitration_id", sorted(WATCHED_IDS))
+def test_a_foreign_command_frame_is_told_without_sending(
+    link: BusLink, peer: Peer, arbitration_id: int
+) -> None:
+    peer.emit(OTHER)
+    peer.emit(CanFrame(arbitration_id, bytes(8)))
+    found: list[BusEvent] = []
+
+    def told() -> bool:
+        found.extend(link.poll())
+        peer.heard()
+        return bool(found)
+
+    assert until(told)
+    assert found == [BusEvent(EventKind.FOREIGN_COMMAND, arbitration_id)]
 
 
 def test_a_closed_bus_takes_nothing_and_may_be_closed_twice(link: BusLink, peer: Peer) -> None:

@@ -198,3 +198,40 @@ def test_the_budget_reaches_the_bus(rig: OutputRig) -> None:
 def test_a_command_without_values_is_zero_and_undefined(rig: OutputRig) -> None:
     rig.tick(Command())
     assert rig.heard()[0].command == Command()
+
+
+def foreign(rig: OutputRig, arbitration_id: int = 0x100) -> None:
+    rig.bus.tell(BusEvent(EventKind.FOREIGN_COMMAND, arbitration_id))
+
+
+def test_a_second_master_is_seen_without_sending(rig: OutputRig) -> None:
+    assert rig.output.listen() == 0
+    for count in (1, 2, 3):
+        foreign(rig, 0x100 + count)
+        assert rig.output.listen() == count
+    assert [line.split(":")[0] for line in rig.log.lines] == [
+        f"ERROR another node sends our CAN frame 0x10{i}" for i in (1, 2, 3)
+    ]
+    rig.clock.advance(0.999)
+    assert rig.output.listen() == 3
+    rig.clock.advance(0.001)
+    assert rig.output.listen() == 0
+    assert rig.log.lines[3:] == ["INFO no other node sends our CAN frames any more"]
+    assert rig.output.listen() == 0
+    assert len(rig.log.lines) == 4
+    foreign(rig)
+    assert rig.output.listen() == 1
+    assert len(rig.log.lines) == 5
+
+
+def test_a_command_that_was_sent_has_read_the_bus(rig: OutputRig) -> None:
+    foreign(rig)
+    rig.tick()
+    foreign(rig)
+    assert rig.output.listen() == 1  # the second one waits for the next command
+    assert rig.output.listen() == 2
+
+
+def test_without_a_bus_there_is_nothing_to_hear() -> None:
+    output = CanOutput(OutputMode.DDS_AND_CAN, None, 0.015, FakeClock(), LogLines())
+    assert output.listen() == 0

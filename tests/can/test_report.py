@@ -67,7 +67,7 @@ def test_summary_as_text() -> None:
     text = "\n".join(summary_lines(monitor, 14.0))
     assert "0x102 COMMAND_STATUS" in text
     assert "6.67 Hz" in text
-    assert "sequence: 1 gaps, 1 commands missing, 0 repeated, 0 backward; 0 losses" in text
+    assert "sequence: 1 gaps, 1 commands missing, 0 repeated, 0 backward; 1 losses" in text
     assert "not complete: 1 torn" in text
 
 
@@ -76,3 +76,14 @@ def test_summary_of_nothing() -> None:
     assert found["latest"] is None
     assert found["commands"]["rate_hz"] is None
     assert "- Hz" in summary_lines(BusMonitor(0.15), 1.0)[0]
+
+
+def test_a_loss_that_goes_on_is_never_no_loss() -> None:
+    monitor = heard(42, 43, 44)
+    text = "\n".join(summary_lines(monitor, 12.645 + 8.0))
+    assert "0 losses" not in text
+    assert text.endswith("LOST: no new command for 8.000 s, and none of its frames comes")
+    found = summary_values(monitor, 12.645 + 8.0)
+    assert (found["commands"]["losses"], found["commands"]["link"]) == (1, "lost")
+    assert found["alarm"].startswith("LOST: no new command for 8.000 s")
+    assert summary_values(monitor, 12.7)["alarm"] is None

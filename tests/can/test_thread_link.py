@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import pytest
 
 from safety_island.can import thread_link
-from safety_island.can.bus import Delivery
+from safety_island.can.bus import BusEvent, Delivery, EventKind
 from safety_island.can.command import Cause
 from safety_island.can.mode import OutputMode
 from safety_island.can.output import CanOutput
@@ -150,3 +150,24 @@ def test_output_recovers_from_a_bus_that_blocked(link: ThreadLink, bus: Blocking
     assert output.counters.reopened >= 1
     assert output.counters.frames[0x100, Cause.TIMED_OUT] >= 2
     assert len([line for line in log.lines if "within a tenth" in line]) == 1
+
+
+def test_events_come_without_a_command(link: ThreadLink, bus: BlockingBus) -> None:
+    bus.tell(BusEvent(EventKind.FOREIGN_COMMAND, 0x100))
+    assert link.poll() == ()  # the thread is asked
+    assert until(lambda: link.poll() == [BusEvent(EventKind.FOREIGN_COMMAND, 0x100)])
+
+
+def test_a_device_that_blocks_does_not_make_polls_pile_up(
+    link: ThreadLink, bus: BlockingBus
+) -> None:
+    stick(link, bus)
+    for _ in range(100):
+        assert link.poll() == ()
+    assert link._tasks.qsize() <= 1
+
+
+def test_a_device_that_is_closed_is_not_polled(bus: BlockingBus) -> None:
+    link = ThreadLink(bus, time.monotonic_ns)
+    assert link.poll() == ()
+    assert link._tasks.qsize() == 0

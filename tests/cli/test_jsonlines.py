@@ -14,6 +14,10 @@ from safety_island.cli.jsonlines import MAX_LINE, JsonLines, plain
 Pipe = tuple[int, int]
 
 
+def never(reason: str) -> None:
+    raise AssertionError(reason)
+
+
 @pytest.fixture
 def pipe() -> Iterator[Pipe]:
     reading, writing = os.pipe()
@@ -22,7 +26,7 @@ def pipe() -> Iterator[Pipe]:
 
 
 def test_one_object_a_line(pipe: Pipe) -> None:
-    lines = JsonLines(pipe[1])
+    lines = JsonLines(never, pipe[1])
     lines.write("tick", {"number": 1, "ages_s": {"odometry": 0.1234567}})
     lines.write("end", {})
     first, second = os.read(pipe[0], 1000).decode().splitlines()
@@ -32,7 +36,7 @@ def test_one_object_a_line(pipe: Pipe) -> None:
 
 
 def test_full_pipe_drops_instead_of_waiting(pipe: Pipe) -> None:
-    lines = JsonLines(pipe[1])
+    lines = JsonLines(never, pipe[1])
     for _ in range(200):
         lines.write("tick", {"text": "x" * 2000})
     assert 0 < lines.dropped < 200
@@ -46,14 +50,14 @@ def test_full_pipe_drops_instead_of_waiting(pipe: Pipe) -> None:
 
 def test_a_full_disk_drops_lines() -> None:
     full = os.open("/dev/full", os.O_WRONLY)
-    lines = JsonLines(full)
+    lines = JsonLines(never, full)
     lines.write("tick", {"number": 1})
     os.close(full)
     assert lines.dropped == 1
 
 
 def test_patient_lines_wait_for_their_reader(pipe: Pipe) -> None:
-    lines = JsonLines(pipe[1], patient=True)
+    lines = JsonLines(never, pipe[1], patient=True)
     read: list[bytes] = []
 
     def drain() -> None:
@@ -70,16 +74,29 @@ def test_patient_lines_wait_for_their_reader(pipe: Pipe) -> None:
 
 
 def test_line_that_could_block_half_written_is_dropped(pipe: Pipe) -> None:
-    lines = JsonLines(pipe[1])
+    lines = JsonLines(never, pipe[1])
     lines.write("tick", {"text": "x" * MAX_LINE})
     assert lines.dropped == 1
     os.close(pipe[0])
 
 
-def test_reader_that_went_away(pipe: Pipe) -> None:
+def test_a_reader_that_went_away_is_told_once_and_is_no_error(pipe: Pipe) -> None:
+    lost: list[str] = []
+    lines = JsonLines(lost.append, pipe[1])
     os.close(pipe[0])
-    with pytest.raises(BrokenPipeError):
-        JsonLines(pipe[1]).write("tick", {})
+    for _ in range(3):
+        lines.write("tick", {})
+    assert (lost, lines.dropped) == (["broken pipe"], 1)
+
+
+def test_a_terminal_that_was_closed_is_lost_as_well() -> None:
+    controller, terminal = os.openpty()
+    lost: list[str] = []
+    lines = JsonLines(lost.append, terminal)
+    os.close(controller)
+    lines.write("tick", {})
+    os.close(terminal)
+    assert lost == ["input/output error"]
 
 
 def test_json_has_no_nan() -> None:

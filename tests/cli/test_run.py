@@ -120,7 +120,7 @@ def test_refused(
 
 
 @pytest.mark.live
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_ends_in_order_when_told_to(domain_id: int, number: signal.Signals) -> None:
     command = [*RUN, "--domain", str(domain_id), "--period", "0.03", "--json"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:

@@ -1,4 +1,4 @@
-"""SIGINT and SIGTERM end a command that starts up, whatever it is doing."""
+"""SIGINT, SIGTERM and SIGHUP end a command that starts up, whatever it is doing."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def stop(code: str, number: signal.Signals) -> tuple[int, str]:
         return process.returncode, rest
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_deaf_start_ends_with_zero(number: signal.Signals) -> None:
     assert stop(DEAF, number) == (0, "")
 

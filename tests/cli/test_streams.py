@@ -35,6 +35,24 @@ def test_an_error_with_nowhere_to_go_keeps_its_exit_code() -> None:
     assert (done.returncode, done.stdout) == (2, "")
 
 
+def test_an_error_that_nobody_reads_keeps_its_exit_code() -> None:
+    reading, writing = os.pipe()
+    os.close(reading)
+    done = subprocess.run([*COMMAND.split(), "nope"], stderr=writing, timeout=60)
+    os.close(writing)
+    assert done.returncode == 2
+
+
+def test_a_line_that_nobody_reads_ends_nothing() -> None:
+    reading, writing = os.pipe()
+    os.close(reading)
+    code = "from safety_island.cli.tell import tell, tell_lost; tell('a'); tell_lost('b'); print(1)"
+    command = [sys.executable, "-c", code]
+    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=writing, timeout=60)
+    os.close(writing)
+    assert (done.returncode, done.stdout) == (0, b"1\n")
+
+
 def test_a_full_disk_is_told_in_one_line() -> None:
     done = shell(f"{COMMAND} --help > /dev/full")
     assert done.returncode == 1

@@ -9,7 +9,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "faults.md"
-ROWS = (*range(1, 52), *range(67, 78))
+ROWS = (*range(1, 52), *range(67, 78), 91, 94)
 """Rows of the catalogue that this campaign covers."""
 ELSEWHERE = (ROOT / "tests/can/test_fault_rows.py", ROOT / "tests/can/test_dbc.py")
 
@@ -35,6 +35,8 @@ What is decided, where another reaction could be expected:
   after a process stood still there is.
 - 39: no clock stops a solver. Its iterations are bounded, and a command that is older than
   `timeout_thr_sec` when it would be sent is not sent.
+- 94: an island that drives goes on and raises the alarm, as with a second publisher: silence would
+  leave the vehicle to the other node.
 - 77: when autonomous mode is left the PID's integrator pauses; it is not reset, as in the firmware.
 
 | row | fault | reaction | bound | tests |
@@ -112,6 +114,16 @@ FAULTS: dict[int, tuple[str, str, str]] = {
     75: ("restart of the bridge", "nothing old counts; its clock may be another", "A"),
     76: ("loop of bridges", "exit code 2, file and line", "start"),
     77: ("mode that toggles", "followed, no output jumps", "1 tick"),
+    91: (
+        "told to end, or the planned end, with CAN alone",
+        "hold, declared stop, then exit code 0; a lost reader of its output ends nothing",
+        "the ramp",
+    ),
+    94: (
+        "second CAN master while the island does not drive",
+        "alarm, silent, does not arm until a second without its frames",
+        "1 tick",
+    ),
 }
 
 

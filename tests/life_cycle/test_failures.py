@@ -27,6 +27,14 @@ class TestCauses:
         assert island.tick(failed=True, arm=True) == silent(Reason.CONTROLLER_FAULT)
         assert island.tick(arm=True) == WELL
 
+    def test_faults_and_ticks_that_crashed_are_not_added_up(self) -> None:
+        island = Island().engage()
+        assert island.tick(failed=True) == WELL
+        for _ in range(2):
+            island.begin()
+            assert island.life_cycle.fault() == WELL
+        assert island.tick(failed=True) == WELL
+
     @pytest.mark.parametrize("reason", [Reason.COMMAND_STALE, Reason.COMMAND_REFUSED])
     def test_commands_that_are_refused(self, reason: Reason) -> None:
         island = Island().engage()

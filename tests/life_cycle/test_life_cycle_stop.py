@@ -118,3 +118,88 @@ def test_a_tick_that_comes_early_is_half_a_period_at_least() -> None:
     stopping = island(hold_ticks=0)
     stopping.now -= 0.75 * T
     assert step(stopping) == ("STOP", Motion(0.25, 0.0, 2.0 - 0.75 * 0.0625, -0.75))
+
+
+ENDING = Reason.SHUTTING_DOWN
+
+
+def test_told_to_end_it_stops_first_and_says_why() -> None:
+    ending = island()
+    assert ending.life_cycle.must_stop
+    names = []
+    while ending.life_cycle.must_stop:
+        assert ending.tick(ENDING).cause is ENDING
+        names.append(ending.life.state.name)
+        ending.life_cycle.motion()
+    count = names.count("STOP")
+    assert names == ["HOLD"] * 2 + ["STOP"] * count + ["SILENT"]
+    assert ending.life == Life(State.SILENT, ENDING, ENDING)
+
+
+def test_a_stop_that_goes_on_is_carried_through_before_the_end() -> None:
+    ending = island()
+    step(ending)
+    assert ending.life_cycle.must_stop
+    step(ending, speed=0.0)
+    assert ending.life_cycle.must_stop
+
+
+def test_an_operator_who_takes_over_ends_it_at_once() -> None:
+    ending = island()
+    for _ in range(4):
+        ending.tick(ENDING)
+        ending.life_cycle.motion()
+    assert ending.tick(ENDING, disengaged=MANUAL) == Life(State.INIT, ENDING)
+    assert not ending.life_cycle.must_stop
+
+
+@pytest.mark.parametrize(
+    ("speed", "command", "must_stop"),
+    [
+        (0.0, (0.0, -1.0), False),
+        (0.0, (0.0, 0.0), False),
+        (0.124, (0.124, -1.0), False),
+        (-0.124, (-0.124, -1.0), False),
+        (0.125, (0.0, -1.0), True),
+        (-0.125, (0.0, -1.0), True),
+        (float("nan"), (0.0, -1.0), True),
+        (0.0, (0.125, -1.0), True),
+        (0.0, (-0.125, -1.0), True),
+        (0.0, (0.0, 0.0625), True),
+    ],
+)
+def test_a_vehicle_that_stands_and_is_told_to_need_not_be_stopped(
+    speed: float, command: tuple[float, float], must_stop: bool
+) -> None:
+    standing = island()
+    standing.tick(speed=speed)
+    standing.life_cycle.sent(Motion(0.25, 0.0, *command), True, standing.now)
+    assert standing.life_cycle.must_stop is must_stop
+
+
+def test_who_is_not_armed_or_has_a_gate_may_end_at_once() -> None:
+    assert not Island(has_ramp=True).life_cycle.must_stop
+    ready = Island(has_ramp=True)
+    ready.tick(disengaged=MANUAL)
+    assert ready.life.state is State.READY and not ready.life_cycle.must_stop
+    assert not Island().engage().life_cycle.must_stop
+
+
+def test_who_is_armed() -> None:
+    driving = island()
+    assert driving.life_cycle.is_armed
+    for state in ("HOLD", "HOLD", "STOP"):
+        assert step(driving)[0] == state
+        assert driving.life_cycle.is_armed
+    while step(driving)[0] != "SILENT":
+        pass
+    assert not driving.life_cycle.is_armed
+
+
+def test_without_a_publisher_of_the_mode_it_is_still_armed() -> None:
+    waiting = Island()
+    waiting.tick(disengaged=GONE)
+    assert waiting.life == Life(State.READY, GONE) and not waiting.life_cycle.is_armed
+    waiting = Island().engage()
+    waiting.tick(disengaged=GONE)
+    assert waiting.life == Life(State.READY, GONE, GONE) and waiting.life_cycle.is_armed

@@ -46,8 +46,8 @@ FIELDS = {
     "safety_island_msgs/msg/Arm": "stamp nonce",
     "safety_island_msgs/msg/InputStatus": "refused writer_guid accepted received superseded"
     " refused_in_a_row age age_limit transport_delay warnings last_refusal other_writers",
-    "safety_island_msgs/msg/Status": "stamp arm_nonce tick commands memory lateral_error"
-    " yaw_error residual stop_dist target_vel command_angle command_rate"
+    "safety_island_msgs/msg/Status": "stamp arm_nonce tick commands memory foreign_can_frames"
+    " lateral_error yaw_error residual stop_dist target_vel command_angle command_rate"
     " command_velocity command_acceleration"
     " tick_time lateral_time longitudinal_time lateness missed_periods"
     " missed_periods_total overruns controller_limits guard_limits guard_clamped"

@@ -8,6 +8,7 @@ from safety_island.control.status import MpcStatus
 from safety_island.dds import topics
 from safety_island.messages.outputs import Control, decode_float64_stamped
 from safety_island.messages.wire import Time
+from safety_island.node.memory import MemoryPublisher
 from safety_island.node.report import Outcome
 from tests.node.rig import ROWS, FakeFollower, Rig
 
@@ -20,11 +21,15 @@ class RecordingOutput:
         self.failed = 0
         self.works = works
         self.sent: list[tuple[Control, int]] = []
+        self.foreign_frames = 0
         self.closed = False
 
     def send(self, command: Control, stamp_ns: int) -> bool:
         self.sent.append((command, stamp_ns))
         return self.works
+
+    def listen(self) -> int:
+        return self.foreign_frames
 
     def close(self) -> None:
         self.closed = True
@@ -88,6 +93,14 @@ class TestOutput:
         assert working.sent[0][1] == 1_000_500_000_000
         assert rig.command() is None  # that topic is an output of its own
 
+    def test_every_output_gets_the_command_when_all_take_it(self, follower: FakeFollower) -> None:
+        dds, can = RecordingOutput("dds"), RecordingOutput("can")
+        rig = Rig(follower, [dds, can])
+        rig.everything(ROWS)
+        assert rig.tick().published
+        assert len(dds.sent) == len(can.sent) == 1
+        assert dds.sent == can.sent
+
     def test_no_output_takes_it(self, follower: FakeFollower) -> None:
         rig = Rig(follower, [RecordingOutput("can", works=False)])
         rig.everything(ROWS)
@@ -103,6 +116,19 @@ class TestOutput:
         rig.everything(ROWS)
         assert rig.tick().published
         assert rig.listen(topics.CONTROL).take_newest() is not None
+
+    def test_the_last_command_is_taken_back_once(
+        self, rig: Rig, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        taken_back: list[MemoryPublisher] = []
+        monkeypatch.setattr(
+            MemoryPublisher, "withdraw", lambda publisher: taken_back.append(publisher)
+        )
+        for count in (1, 2):
+            rig.everything(ROWS)
+            assert rig.tick().published
+            assert not any(rig.tick(0.6).published for _ in range(5))
+            assert len(taken_back) == count
 
     def test_outputs_are_closed_with_the_node(self, follower: FakeFollower) -> None:
         output = RecordingOutput("can")

@@ -9,7 +9,7 @@ import pytest
 
 from safety_island.can.mode import OutputMode
 from safety_island.control.status import Mode, MpcStatus
-from safety_island.guard import Limit
+from safety_island.guard import Limit, Verdict
 from safety_island.life_cycle.ramp import Motion
 from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State
@@ -148,6 +148,21 @@ class TestCanOnly:
         step = now.steering_tire_angle - before.steering_tire_angle
         assert step == pytest.approx(rate * T, rel=0.05)  # a little less at 1 m/s
 
+    @pytest.mark.parametrize("measured", [0.7, -0.7])
+    def test_steering_that_does_not_follow_clamps_no_command_of_the_ramp(
+        self, follower: FakeFollower, measured: float
+    ) -> None:
+        rig, can = can_only(follower)
+        for _ in range(2):
+            tick(rig, stale=True)
+        del can.sent[:]
+        rig.steering(measured)
+        for _ in range(10):
+            report = rig.tick(T)
+            assert report.outcome is Outcome.SUBSTITUTED
+            assert rig.node.check.limits == 0
+        assert {motion(command)[0] for command, _ in can.sent} == {0.0625}
+
     def test_a_driver_who_takes_over_ends_the_ramp(self, follower: FakeFollower) -> None:
         rig, _ = can_only(follower)
         for _ in range(7):
@@ -224,6 +239,17 @@ class TestSilence:
         tick(rig, stale=True)
         assert "lateral" not in [call[0] for call in follower.calls]
         assert output.sent == []
+
+    def test_the_first_command_after_it_has_no_predecessor(self, follower: FakeFollower) -> None:
+        rig, _ = self.silent(follower)
+        for _ in range(33):
+            tick(rig)
+        follower.command["steering_tire_angle"] = -0.125
+        follower.command["acceleration"] = 0.0
+        report = tick(rig, engaged=False)
+        assert report.published and report.command is not None
+        assert (rig.node.check.verdict, rig.node.check.limits) == (Verdict.PASSED, 0)
+        assert motion(report.command)[0] == -0.125
 
     def test_engaging_anew_ends_it(self, follower: FakeFollower) -> None:
         rig, output = self.silent(follower)

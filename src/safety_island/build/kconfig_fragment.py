@@ -41,7 +41,7 @@ def read_fragment(path: Path) -> list[Assignment]:
     """Read a fragment. Raises ConfigurationError with every line that cannot be read."""
     name = shown(path)
     try:
-        text = path.read_text(encoding="utf-8")
+        text = path.read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
         reason = error.strerror if isinstance(error, OSError) else "it is not UTF-8 text"
         raise ConfigurationError(f"{name}: cannot read this configuration: {reason}") from error

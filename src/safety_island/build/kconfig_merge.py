@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from safety_island.build import kconfig_symbols as symbols
+from safety_island.build import kconfig_zephyr
 from safety_island.build.kconfig_fragment import Assignment, read_fragment, read_override
 from safety_island.errors import ConfigurationError
 
@@ -40,15 +41,18 @@ def merge(
 ) -> tuple[dict[str, Assignment], list[str]]:
     """Give Kconfig all assignments; return those in force by symbol, and what replaced what.
 
-    A member of a choice that was set to y stands under the name of the choice. Raises
+    A member of a choice that was set to y stands under the name of the choice. Symbols of Zephyr
+    are one note for each file. Raises
     ConfigurationError for an unknown symbol and for a value that Kconfig refuses: one that was not
     taken at the end of its source and is not at the end of all. What a later source turned off is
     told only.
     """
+    zephyrs = [a for source in sources for a in source if symbols.is_zephyrs(kconfig, a)]
+    sources = [[a for a in source if a not in zephyrs] for source in sources]
     every = [symbols.with_quotes(kconfig, item) for source in sources for item in source]
     _raise(f"{a.place}: {text}" for a in every if (text := symbols.refusal(kconfig, a)))
     in_force: dict[str, Assignment] = {}
-    notes: list[str] = []
+    notes = kconfig_zephyr.notes(zephyrs)
     taken: set[Assignment] = set()
     left = iter(every)
     for source in sources:

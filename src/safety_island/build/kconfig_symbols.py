@@ -15,6 +15,7 @@ from typing import Any
 
 import kconfiglib
 
+from safety_island.build import kconfig_zephyr
 from safety_island.build.kconfig_fragment import PREFIX, Assignment, quote, shown, unquote
 from safety_island.errors import ConfigurationError
 
@@ -114,6 +115,15 @@ def refusal(kconfig: Any, assignment: Assignment) -> str | None:
         return f"{PREFIX}{symbol.name} cannot be set: it follows from {causes}"
     expected = _expected_form(symbol, assignment.value)
     return f"{assignment}: expected {expected}" if expected else None
+
+
+def is_zephyrs(kconfig: Any, assignment: Assignment) -> bool:
+    """Whether a line of a file sets a symbol that only the firmware has."""
+    symbol = kconfig.syms.get(assignment.symbol)
+    if assignment.is_override or (symbol is not None and symbol.nodes):
+        return False
+    names = [item.name for item in kconfig.unique_defined_syms]
+    return kconfig_zephyr.is_zephyrs(assignment.symbol, [*names, *kconfig.named_choices])
 
 
 def not_taken(assignment: Assignment, symbol: Any) -> str | None:

@@ -87,6 +87,9 @@ class BusLink(Protocol):
     def send(self, frames: Sequence[CanFrame], budget_s: float) -> Delivery:
         """Deliver the frames of one command within the budget [s], or give up."""
 
+    def poll(self) -> Sequence[BusEvent]:
+        """Return what happened since the last call or delivery; never waits."""
+
     def discard(self) -> None:
         """Throw away what waits to be sent."""
 

@@ -106,6 +106,11 @@ FRAMES = (LATERAL, LONGITUDINAL, STATUS)
 
 COMMAND_IDS = frozenset(frame.arbitration_id for frame in FRAMES)
 
+CHECKSUM_ID = 0x103
+"""Kept free for a frame with a checksum of the three; whoever sends it commands the vehicle."""
+WATCHED_IDS = COMMAND_IDS | {CHECKSUM_ID}
+"""Identifiers that no other node may send."""
+
 
 def limits_text(name: str) -> str:
     """Return the range of a signal in its unit, for a message to a user."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from safety_island.can.bus import BusDevice, Delivery, MonotonicNs, deliver
+from safety_island.can.bus import BusDevice, BusEvent, Delivery, MonotonicNs, deliver
 from safety_island.platform.interfaces import CanError, CanFrame
 
 
@@ -24,6 +24,10 @@ class DirectLink:
     def send(self, frames: Sequence[CanFrame], budget_s: float) -> Delivery:
         """Deliver the frames within the budget [s]."""
         return deliver(self.device, frames, self._clock() + int(budget_s * 1e9), self._clock)
+
+    def poll(self) -> Sequence[BusEvent]:
+        """Return what happened on the bus."""
+        return self.device.poll()
 
     def discard(self) -> None:
         """Throw away what waits to be sent."""

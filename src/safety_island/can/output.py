@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
-from safety_island.can.bus import BusLink, Delivery, MonotonicNs
+from safety_island.can.bus import BusEvent, BusLink, Delivery, EventKind, MonotonicNs
 from safety_island.can.command import Cause, ControlFields, as_published
 from safety_island.can.counters import CanCounters
 from safety_island.can.encoder import Rejection, Triple, encode
@@ -16,6 +17,8 @@ from safety_island.can.receiver import SEQUENCE_MODULUS
 from safety_island.can.recovery import Recovery, Remedy
 from safety_island.platform.interfaces import CanFrame, CanResult, Logger
 
+FOREIGN_S = 1.0
+"""After so long without a frame of another node nobody else commands the vehicle."""
 Recorder = Callable[[int, Iterable[CanFrame]], None]
 """Told the stamp [ns] and the frames that were handed to the bus."""
 
@@ -60,7 +63,8 @@ class CanOutput:
         self._clock = clock
         self._recorder = recorder
         self._sequence = 0
-        self._is_renewed = False
+        self._is_renewed = self._has_polled = False
+        self._foreign_frames, self._foreign_until_s = 0, -math.inf
         self._recovery = Recovery()
         self._log = OutputLog(logger)
         if open_failure is not None:
@@ -95,6 +99,20 @@ class CanOutput:
             self._recorder(stamp_ns, frames[: delivery.sent])
         return self._judge(delivery, now_s)
 
+    def listen(self) -> int:
+        """Count our frames that another node sends; 0 when none came for a second.
+
+        To be called in every tick. A command that was sent since has read the bus already.
+        """
+        now_s = self._clock() / 1e9
+        if self._link is not None and not self._has_polled:
+            self._take(self._link.poll(), now_s)
+        self._has_polled = False
+        if now_s >= self._foreign_until_s:
+            self._foreign_frames = 0
+            self._log.nothing_foreign()
+        return self._foreign_frames
+
     def close(self) -> None:
         """Give the bus back; what waits behind a bus in trouble does not leave any more."""
         if self._link is None:
@@ -116,6 +134,7 @@ class CanOutput:
         if not self._is_renewed and not self._mend(link, now_s):
             return None
         self._is_renewed = False
+        self._has_polled = True
         return link.send(frames, self._budget_s)
 
     def _mend(self, link: BusLink, now_s: float) -> bool:
@@ -132,9 +151,7 @@ class CanOutput:
         return not self._is_renewed
 
     def _judge(self, delivery: Delivery, now_s: float) -> Cause | None:
-        for event in delivery.events:
-            self.counters.events[event.kind] += 1
-            self._log.event(event)
+        self._take(delivery.events, now_s)
         if delivery.result is CanResult.SENT:
             self.counters.sent += 1
             self._log.sent()
@@ -142,6 +159,14 @@ class CanOutput:
             return None
         self._recovery.fail(delivery.result, now_s)
         return self._fail(delivery.sent, delivery.result)
+
+    def _take(self, events: Iterable[BusEvent], now_s: float) -> None:
+        for event in events:
+            self.counters.events[event.kind] += 1
+            self._log.event(event)
+            if event.kind is EventKind.FOREIGN_COMMAND:
+                self._foreign_frames += 1
+                self._foreign_until_s = now_s + FOREIGN_S
 
     def _fail(self, index: int, result: CanResult) -> Cause:
         cause = Cause[result.name]

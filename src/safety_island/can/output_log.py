@@ -33,6 +33,7 @@ class OutputLog:
         self._rejections = 0
         self._causes: set[Cause] = set()
         self._events: set[BusEvent] = set()
+        self._foreign: set[BusEvent] = set()
 
     def sent(self) -> None:
         """A command went out: what was wrong is over."""
@@ -67,16 +68,26 @@ class OutputLog:
     def event(self, event: BusEvent) -> None:
         """The bus told something."""
         if event.kind in _OVER:
-            self._events = {e for e in self._events if e.kind is EventKind.FOREIGN_COMMAND}
+            self._events.clear()
             self._logger.info("CAN controller: %s", event.kind.replace("_", " "))
             return
-        if event in self._events or event.kind is EventKind.BUS_OFF:
+        if event in self._events or event in self._foreign or event.kind is EventKind.BUS_OFF:
             return  # bus-off is told as the cause of the command that it stopped
-        self._events.add(event)
         if event.kind is EventKind.FOREIGN_COMMAND:
+            self._foreign.add(event)
             self._logger.error(
                 "another node sends our CAN frame 0x%03X: two masters on one bus",
                 event.arbitration_id,
+                throttled=True,
+                site=f"CAN foreign {event.arbitration_id:03X}",
             )
         else:
+            self._events.add(event)
             self._logger.warning(_EVENTS[event.kind])
+
+    def nothing_foreign(self) -> None:
+        """No other node sends our frames."""
+        if self._foreign:
+            self._foreign.clear()
+            text = "no other node sends our CAN frames any more"
+            self._logger.info(text, throttled=True)

@@ -10,7 +10,7 @@ import can
 
 from safety_island.can.bus import BusEvent, EventKind, MonotonicNs
 from safety_island.can.bus_errors import events_of, result_of
-from safety_island.can.frames import COMMAND_IDS, FRAMES
+from safety_island.can.frames import FRAMES, WATCHED_IDS
 from safety_island.can.python_can_bus import check_spec, close_bus, discard_output, open_bus
 from safety_island.can.socketcan import COMMAND_FILTERS, is_held_back, refuse_without_carrier
 from safety_island.can.spec import Backend, BusSpec
@@ -110,7 +110,7 @@ class PythonCanDevice:
     def _events(self, message: can.Message) -> list[BusEvent]:
         if message.is_error_frame:
             return events_of(message)
-        if message.is_extended_id or message.arbitration_id not in COMMAND_IDS:
+        if message.is_extended_id or message.arbitration_id not in WATCHED_IDS:
             return []
         if self._backend.echoes:
             frame = CanFrame(message.arbitration_id, bytes(message.data))

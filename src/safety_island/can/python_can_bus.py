@@ -94,8 +94,10 @@ def next_entry(bus: can.BusABC, spec: BusSpec, wait_s: float) -> LogEntry | None
 
 def entry_of(message: can.Message) -> LogEntry:
     """Return a message of python-can as an entry of a log."""
+    channel = "" if message.channel is None else str(message.channel)
     if message.is_error_frame:
-        return LogEntry(message.timestamp, None, is_error=True)
+        return LogEntry(message.timestamp, None, True, channel)
     if message.is_extended_id or message.is_remote_frame or message.is_fd:
-        return LogEntry(message.timestamp, None)
-    return LogEntry(message.timestamp, CanFrame(message.arbitration_id, bytes(message.data)))
+        return LogEntry(message.timestamp, None, False, channel)
+    frame = CanFrame(message.arbitration_id, bytes(message.data))
+    return LogEntry(message.timestamp, frame, False, channel)

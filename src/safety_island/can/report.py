@@ -77,7 +77,13 @@ def summary_values(monitor: BusMonitor, now_s: float) -> dict[str, Any]:
             | _arrivals_values(monitor.frames[row.arbitration_id], now_s)
             for row in FRAMES
         },
-        "commands": _arrivals_values(monitor.commands, now_s) | {"losses": monitor.losses},
+        "commands": _arrivals_values(monitor.commands, now_s)
+        | {
+            "losses": monitor.losses.count(now_s),
+            "link": str(monitor.losses.link(now_s)),
+            "period_s": monitor.losses.period_s,
+        },
+        "alarm": monitor.alarm(now_s) or None,
         "sequence": {
             "gaps": sequence.gaps,
             "missing": sequence.missing,
@@ -114,10 +120,12 @@ def summary_lines(monitor: BusMonitor, now_s: float) -> list[str]:
     s = monitor.sequence
     lines.append(
         f"sequence: {s.gaps} gaps, {s.missing} commands missing, {s.repeated} repeated, "
-        f"{s.backward} backward; {monitor.losses} losses of three periods"
+        f"{s.backward} backward; {monitor.losses.count(now_s)} losses of three periods"
     )
     if monitor.faults:
         found = (f"{count} {fault.replace('_', ' ')}" for fault, count in monitor.faults.items())
         lines.append(f"not complete: {', '.join(found)}")
     lines.append(f"other frames: {monitor.other_frames}, error frames: {monitor.error_frames}")
+    if alarm := monitor.alarm(now_s):
+        lines.append(alarm)
     return lines

@@ -7,11 +7,11 @@ import struct
 from contextlib import suppress
 from pathlib import Path
 
-from safety_island.can.frames import COMMAND_IDS
+from safety_island.can.frames import WATCHED_IDS
 from safety_island.platform.interfaces import CanError
 
-COMMAND_FILTERS = [{"can_id": i, "can_mask": 0x7FF, "extended": False} for i in sorted(COMMAND_IDS)]
-"""Kernel filters for our own identifiers; error frames pass them."""
+COMMAND_FILTERS = [{"can_id": i, "can_mask": 0x7FF, "extended": False} for i in sorted(WATCHED_IDS)]
+"""Kernel filters for the identifiers that are ours; error frames pass them."""
 
 INTERFACES = Path("/sys/class/net")
 

@@ -6,7 +6,7 @@ import threading
 from collections.abc import Callable, Sequence
 from queue import Empty, SimpleQueue
 
-from safety_island.can.bus import BusDevice, Delivery, MonotonicNs, deliver
+from safety_island.can.bus import BusDevice, BusEvent, Delivery, MonotonicNs, deliver
 from safety_island.can.link import renew
 from safety_island.platform.interfaces import CanError, CanFrame, CanResult
 
@@ -47,6 +47,8 @@ class ThreadLink:
         self._clock = clock
         self._is_open = False
         self._job: _Job | None = None
+        self._polled: SimpleQueue[Sequence[BusEvent]] = SimpleQueue()
+        self._is_polling = False
         self._tasks: SimpleQueue[Callable[[], None] | None] = SimpleQueue()
         self._thread = threading.Thread(target=self._run, name="can", daemon=True)
 
@@ -78,6 +80,20 @@ class ThreadLink:
             if not job.finished.is_set():
                 return Delivery(job.index, CanResult.TIMED_OUT)
         return job.delivery
+
+    def poll(self) -> Sequence[BusEvent]:
+        """Return what the thread found when it was last asked, and ask it again."""
+        if self._is_polling:
+            try:
+                events = self._polled.get_nowait()
+            except Empty:
+                return ()
+        else:
+            events = ()
+        self._is_polling = self._is_open
+        if self._is_open:
+            self._tasks.put(lambda: self._polled.put(self.device.poll()))
+        return events
 
     def discard(self) -> None:
         """Throw away what waits to be sent, before the next command."""

@@ -8,7 +8,7 @@ from safety_island.cli import options
 from safety_island.cli.jsonlines import JsonLines
 from safety_island.cli.parser import teach
 from safety_island.cli.stopping import StopAtOnce, StopFlag
-from safety_island.cli.tell import tell
+from safety_island.cli.tell import tell, tell_lost
 
 SWITCH = {"true": True, "false": False}
 
@@ -96,7 +96,7 @@ def execute(arguments: argparse.Namespace) -> int:
             duration_s=arguments.duration,
         )
         stop = StopFlag()
-        report = JsonLines().write if arguments.json else None
+        report = JsonLines(tell_lost).write if arguments.json else None
         with load("posix").on_stop(stop.set):
             start.disarm()
             return run(arguments.config, chosen, stop, report, tell)

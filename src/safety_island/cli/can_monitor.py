@@ -4,14 +4,20 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any, Protocol
 
+from safety_island.can.candump import LogEntry
 from safety_island.can.monitor import RECENT, BusMonitor
+from safety_island.can.receiver import Link
 from safety_island.can.report import command_text, command_values, summary_lines, summary_values
 from safety_island.cli.options import add_duration, add_json, period_s
+from safety_island.cli.parser import UsageError
+from safety_island.cli.stopping import StopFlag
+from safety_island.cli.tell import tell
 from safety_island.platform.interfaces import Clock
 
 DEFAULT_BUS = "socketcan:can0"
@@ -29,9 +35,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--period",
         type=period_s,
-        default=0.15,
         metavar="SECONDS",
-        help="control period of the island: three without a command are a loss (default: 0.15)",
+        help="control period of the island: three without a command are a loss (default: as its "
+        "frames show)",
+    )
+    parser.add_argument(
+        "--channel",
+        metavar="NAME",
+        help="channel of a log that has several, for example can0 (.asc, .blf: 1)",
     )
     parser.add_argument(
         "--summary", action="store_true", help="leave out the single commands of a log"
@@ -42,21 +53,29 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def execute(arguments: argparse.Namespace) -> int:
-    """Decode until the log ends, the time is over, or the user stops it."""
-    if arguments.log is not None:
-        _decode_log(arguments)
-    else:
-        _watch(arguments)
+    """Decode until the log ends, the time is over, or the user stops it.
+
+    Returns 1 when commands are lost at the end of watching a live bus.
+    """
+    if arguments.log is None:
+        if arguments.channel is not None:
+            raise UsageError("--channel: a live bus is one channel; name it in --can")
+        return _watch(arguments)
+    _decode_log(arguments)
     return 0
 
 
 def _decode_log(arguments: argparse.Namespace) -> None:
-    from safety_island.can.log_reader import read_log
+    from safety_island.can.channels import Channels
+    from safety_island.can.log_reader import LogNotes, read_log
 
     monitor = BusMonitor(arguments.period)
     commands: list[dict[str, Any]] = []
     last_s = 0.0
-    for entry in read_log(arguments.log):
+    channels, notes = Channels(arguments.channel), LogNotes(arguments.log)
+    for entry in read_log(arguments.log, notes):
+        if not channels.takes(entry):
+            continue
         last_s = entry.time_s
         seen = monitor.feed(entry)
         if seen is None or arguments.summary:
@@ -65,9 +84,13 @@ def _decode_log(arguments: argparse.Namespace) -> None:
             commands.append(command_values(seen))
         else:
             print(command_text(seen))
+    channels.check(arguments.log)
+    for note in notes.sentences():
+        tell(f"island: {note}")
     if arguments.json:
         listed = {} if arguments.summary else {"decoded": commands}
-        print(json.dumps({"log": arguments.log} | summary_values(monitor, last_s) | listed))
+        head = {"log": arguments.log, "notes": notes.sentences()}
+        print(json.dumps(head | summary_values(monitor, last_s) | listed))
     else:
         print("\n".join(summary_lines(monitor, last_s)))
 
@@ -78,43 +101,46 @@ class _Display(Protocol):
     def __call__(self, monitor: BusMonitor, now_s: float) -> None: ...
 
 
-def _watch(arguments: argparse.Namespace) -> None:
+def _watch(arguments: argparse.Namespace) -> int:
+    """Watch a live bus; times are those of the monotonic clock, which nobody sets."""
     from safety_island.can.live import watch
     from safety_island.can.spec import parse_spec
     from safety_island.platform.posix.clock import PosixClock
+    from safety_island.platform.posix.process import on_stop
 
-    clock = PosixClock()
-    monitor = BusMonitor(arguments.period, RECENT)
+    clock, stop = PosixClock(), StopFlag()
     entries = watch(parse_spec(arguments.can))
     try:
-        with _display(arguments) as show:
-            _feed(monitor, entries, clock, arguments.duration, show)
+        with _display(arguments) as show, on_stop(stop.set):
+            return _feed(entries, clock, arguments, stop, show)
     finally:
         entries.close()
 
 
 def _feed(
-    monitor: BusMonitor,
-    entries: Iterator[Any],
+    entries: Iterator[LogEntry | None],
     clock: Clock,
-    duration_s: float,
+    arguments: argparse.Namespace,
+    stop: StopFlag,
     show: _Display,
-) -> None:
-    started_ns = shown_ns = clock.monotonic_ns()
-    end_ns = started_ns + int(duration_s * _NS_PER_S) if duration_s else None
+) -> int:
+    started_ns = shown_ns = now_ns = clock.monotonic_ns()
+    end_ns = started_ns + arguments.duration * _NS_PER_S if arguments.duration else math.inf
+    monitor = BusMonitor(arguments.period, RECENT, started_ns / _NS_PER_S)
     try:
         for entry in entries:
-            if entry is not None:
-                monitor.feed(entry)
             now_ns = clock.monotonic_ns()
-            if end_ns is not None and now_ns >= end_ns:
+            if entry is not None:
+                monitor.feed(entry, now_ns / _NS_PER_S)
+            if now_ns >= end_ns or stop.is_set():
                 break
             if now_ns - shown_ns >= _REFRESH_NS:
                 shown_ns = now_ns
-                show(monitor, clock.now())
+                show(monitor, now_ns / _NS_PER_S)
     except KeyboardInterrupt:
-        pass  # the usual way to end it; what was found is still shown
-    show(monitor, clock.now())
+        pass  # a usual way to end it; what was found is still shown
+    show(monitor, now_ns / _NS_PER_S)
+    return int(monitor.losses.link(now_ns / _NS_PER_S) is Link.LOST)
 
 
 @contextmanager

@@ -6,7 +6,7 @@ import json
 import math
 import os
 import select
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 from safety_island.cli.streams import is_full
 
@@ -18,40 +18,35 @@ class JsonLines:
     """One JSON object a line on a file descriptor; a line that would have to wait is dropped.
 
     ``dropped`` counts those, and those longer than MAX_LINE. With ``patient`` lines wait for their
-    reader: for virtual time, where nobody is in a hurry.
+    reader: for virtual time, where nobody is in a hurry. When the reader has gone, ``on_lost`` is
+    called once with the reason, and nothing more is written: what drives goes on without a reader.
     """
 
-    def __init__(self, descriptor: int = 1, *, patient: bool = False) -> None:
+    def __init__(
+        self, on_lost: Callable[[str], None], descriptor: int = 1, *, patient: bool = False
+    ) -> None:
         self.dropped = 0
+        self._on_lost, self._is_lost = on_lost, False
         self._timeout_ms = None if patient else 0
         self._descriptor = descriptor
         self._poll = select.poll()
         self._poll.register(descriptor, select.POLLOUT)
 
     def write(self, event: str, values: Mapping[str, object]) -> None:
-        """Write one event; a number that is NaN or infinite becomes null.
-
-        Raises BrokenPipeError when nobody can read any more.
-        """
+        """Write one event; a number that is NaN or infinite becomes null."""
+        if self._is_lost:
+            return
         line = json.dumps(plain({"event": event, **values}), allow_nan=False).encode() + b"\n"
-        if len(line) > MAX_LINE or not self._is_writable():
-            self.dropped += 1
-        else:
-            self._put(line)
-
-    def _put(self, line: bytes) -> None:
         try:
-            os.write(self._descriptor, line)
+            if len(line) <= MAX_LINE and self._poll.poll(self._timeout_ms):
+                os.write(self._descriptor, line)
+            else:
+                self.dropped += 1
         except OSError as error:
+            self.dropped += 1
             if not is_full(error):
-                raise
-            self.dropped += 1  # a full disk under the report is no reason to stop driving
-
-    def _is_writable(self) -> bool:
-        ready = self._poll.poll(self._timeout_ms)
-        if ready and ready[0][1] & select.POLLERR:
-            raise BrokenPipeError
-        return bool(ready)
+                self._is_lost = True
+                self._on_lost(str(error.strerror).lower())
 
 
 def plain(value: object) -> object:

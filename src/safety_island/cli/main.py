@@ -11,6 +11,7 @@ from safety_island import __version__
 from safety_island.cli import streams
 from safety_island.cli.parser import Parser, UsageError, nearest
 from safety_island.cli.table import COMMANDS, Command, find, load
+from safety_island.cli.tell import tell
 from safety_island.errors import IslandError
 
 DEBUG = "SAFETY_ISLAND_DEBUG"
@@ -77,11 +78,11 @@ def main(argv: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         return 128 + signal.SIGINT
     except BrokenPipeError:  # nobody reads on
-        streams.give_up_output()
+        streams.give_up(sys.stdout)
         return 128 + signal.SIGPIPE
     except Exception as error:
         if isinstance(error, OSError) and streams.is_full(error):
-            streams.give_up_output()
+            streams.give_up(sys.stdout)
             return _complain(f"cannot write: {error.strerror}; make room and try again", 1)
         if os.environ.get(DEBUG):
             raise
@@ -91,5 +92,5 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _complain(message: str, code: int) -> int:
     for line in message.splitlines():
-        print(f"island: error: {line}", file=sys.stderr)
+        tell(f"island: error: {line}")
     return code

@@ -8,7 +8,7 @@ from safety_island.cli import options
 from safety_island.cli.jsonlines import JsonLines
 from safety_island.cli.parser import teach
 from safety_island.cli.stopping import StopAtOnce, StopFlag
-from safety_island.cli.tell import tell
+from safety_island.cli.tell import tell, tell_lost
 from safety_island.sim.courses import COURSES, DEFAULT_COURSE
 
 
@@ -64,7 +64,7 @@ def execute(arguments: argparse.Namespace) -> int:
             dds=DdsConfig(interface=arguments.interface),
         )
         platform, stop = load("posix"), StopFlag()
-        report = JsonLines().write if arguments.json else None
+        report = JsonLines(tell_lost).write if arguments.json else None
         with platform.on_stop(stop.set):
             start.disarm()
             return run(chosen, stop, platform.clock, report, tell)

@@ -17,8 +17,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
 Run the safety island: subscribe to trajectory, odometry, acceleration, steering and operation
 mode, and send a control command every period, over DDS, CAN or both. The configuration is that of
 the target (see 'island config'); options win over it. The start waits for the address of the
-network interface. Stop it with Ctrl-C or SIGTERM: it finishes its tick, closes CAN and DDS, and
-exits 0.
+network interface. Stop it with Ctrl-C, SIGTERM or SIGHUP: it finishes its tick, closes CAN and
+DDS, and exits 0. With CAN_ONLY it stops a moving vehicle first, also at the end of --duration; a
+second signal ends it at once.
 """,
         ("island run", "domain 2 on this machine, 150 ms, the default parameters"),
         ("island run --interface tap0 --period 0.03", "on a network, at Autoware's own period"),

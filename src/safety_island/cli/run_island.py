@@ -16,6 +16,7 @@ from safety_island.cli.run_report import RunReport
 from safety_island.cli.run_settings import RunSettings, run_settings
 from safety_island.cli.run_start import bring_up, thread_stacks
 from safety_island.cli.stopping import StopAtOnce
+from safety_island.cli.tell import LOST
 from safety_island.control.follower import TrajectoryFollower
 from safety_island.control.records import Records
 from safety_island.dds.network import check_exists
@@ -73,10 +74,17 @@ def _start(run: Run, start: StopAtOnce, stack: ExitStack) -> None:
     _drive(run, node, follower.trace, can, start)
 
 
+def _json_lines(platform: Platform, node: ControllerNode) -> JsonLines:
+    """Return what writes the ticks; a reader that has gone ends nothing but a virtual drive."""
+    if platform.name == "sim":
+        return JsonLines(lambda reason: node.stop(), patient=True)
+    return JsonLines(lambda reason: platform.logger.warning(LOST, reason))
+
+
 def _drive(run: Run, node: ControllerNode, trace: Records, can: CanSide, start: StopAtOnce) -> None:
     """Tick until told to stop, then close the node and tell how it went."""
     platform, settings, parameters, arguments = run
-    lines = JsonLines(patient=platform.name == "sim") if arguments.json else None
+    lines = _json_lines(platform, node) if arguments.json else None
     side = can if settings.mode.uses_can else None
     report = RunReport(node, trace, seconds_since_start, lines, side)
     node.observers.append(report)

@@ -1,4 +1,4 @@
-"""SIGINT and SIGTERM while a command starts up: the process ends at once, with exit code 0.
+"""SIGINT, SIGTERM, SIGHUP while a command starts up: the process ends at once, with exit code 0.
 
 A handler that raises is not enough: the exception is lost when it hits a callback of the compiler,
 and a handler has to wait for library code that runs for seconds. So the interpreter's own C handler
@@ -13,7 +13,7 @@ import threading
 from types import TracebackType
 from typing import Self
 
-SIGNALS = (signal.SIGINT, signal.SIGTERM)
+from safety_island.platform.signals import stop_signals
 
 
 class StopAtOnce:
@@ -25,8 +25,8 @@ class StopAtOnce:
     def __enter__(self) -> Self:
         self._reading, self._writing = os.pipe()
         os.set_blocking(self._writing, False)
+        self._before = {number: signal.signal(number, _do_nothing) for number in stop_signals()}
         threading.Thread(target=self._watch, name="stop", daemon=True).start()
-        self._before = {number: signal.signal(number, _do_nothing) for number in SIGNALS}
         self._fd_before = signal.set_wakeup_fd(self._writing, warn_on_full_buffer=False)
         self._armed = True
         return self
@@ -50,7 +50,7 @@ class StopAtOnce:
 
     def _watch(self) -> None:
         while number := os.read(self._reading, 1):
-            if number[0] in SIGNALS:
+            if number[0] in self._before:
                 os._exit(0)
         os.close(self._reading)
 

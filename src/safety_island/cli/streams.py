@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import os
 import sys
+from typing import TextIO
 
 _MODES = {"stdin": "r", "stdout": "w", "stderr": "w"}
 _NO_ROOM = (errno.ENOSPC, errno.EDQUOT)
@@ -23,9 +24,9 @@ def open_missing() -> None:
             setattr(sys, name, os.fdopen(number, mode, closefd=False))
 
 
-def give_up_output() -> None:
-    """Point standard output at the null device: the interpreter writes once more at its end."""
-    _point_at_null(sys.stdout.fileno())
+def give_up(stream: TextIO) -> None:
+    """Point a standard stream at the null device: the interpreter writes once more at its end."""
+    _point_at_null(stream.fileno())
 
 
 def is_full(error: OSError) -> bool:

@@ -56,9 +56,9 @@ NEWER = """\
 ## Names of newer releases
 
 With the rules of a newer Autoware (`autoware_release`, see [parameters](parameters.md)) the island
-uses that release's names. The offset of the steering sensor is an input of its own since 0.51: it is
-subscribed to when `steering_offset.enable_auto_steering_offset_removal` is true, no tick waits for
-it, and a value that is not finite or beyond `steering_offset.input_limit` is refused.
+uses that release's names. The offset of the steering sensor is an input of its own since 0.51: the
+island subscribes to it when `steering_offset.enable_auto_steering_offset_removal` is true, no tick
+waits for it, and a value that is not finite or beyond `steering_offset.input_limit` is refused.
 """
 
 _NORMS = f"{MIN_SQUARE_NORM**0.5:g} to {MAX_SQUARE_NORM**0.5:g}"

@@ -46,6 +46,27 @@ class LifeCycle:
         """Whether the controllers may count on being followed."""
         return self.life.state in _CONTROLS
 
+    @property
+    def is_armed(self) -> bool:
+        """Whether the vehicle is under control, or may be again without being engaged anew."""
+        state, _, cause = self.life
+        return state in _DRIVES or (state is State.READY and cause is not Reason.NONE)
+
+    @property
+    def must_stop(self) -> bool:
+        """Whether commands may not just end: the vehicle hears only CAN, and is not at rest.
+
+        A stop that has begun is carried through. It always comes to its end, since it follows the
+        time and no measurement.
+        """
+        if self.life.state in (State.HOLD, State.STOP):
+            return True
+        if not self._has_ramp or self.life.state is not _ACTIVE:
+            return False
+        last, slow = self._stop.last_sent, self._moving_speed
+        is_at_rest = abs(self._speed) < slow and abs(last.velocity) < slow
+        return not (is_at_rest and last.acceleration <= 0.0)
+
     def begin(self, now: float, slept_s: float, skipped: int) -> bool:
         """Begin a tick; True when the process stood still, and everything begins anew.
 

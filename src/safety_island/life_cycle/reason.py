@@ -32,6 +32,8 @@ class Reason(IntEnum):
     COMMAND_REFUSED = 17
     OUTPUT_FAILED = 18
     LATCHED = 19
+    SHUTTING_DOWN = 20
+    SECOND_CAN_MASTER = 21
 
 
 class Explanation(NamedTuple):
@@ -120,5 +122,13 @@ EXPLANATIONS: dict[Reason, Explanation] = {
     Reason.LATCHED: Explanation(
         "the cause of the silence is gone, and the island waits to be armed",
         "leave autonomous mode and engage it again, or `island arm`",
+    ),
+    Reason.SHUTTING_DOWN: Explanation(
+        "the island was told to end; a vehicle that hears only CAN is stopped first",
+        "wait until it has stopped, or tell the island again to end it at once",
+    ),
+    Reason.SECOND_CAN_MASTER: Explanation(
+        "another node on the CAN bus sends the island's frames",
+        "find and stop it; the island does not arm before",
     ),
 }

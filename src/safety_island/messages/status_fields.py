@@ -32,6 +32,7 @@ class Status(NamedTuple):
     tick: int
     commands: int
     memory: int
+    foreign_can_frames: int
     lateral_error: float
     yaw_error: float
     residual: float

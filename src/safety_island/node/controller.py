@@ -117,7 +117,7 @@ class ControllerNode(Node):
         for observer in (self._look_at_memory, *self.observers):
             try:
                 observer(report)
-            except (MemoryError, BrokenPipeError):  # who reads what a run prints may end it
+            except MemoryError:
                 raise
             except Exception as error:  # what only looks on must not stop what drives
                 self.logger.error("an observer failed: %s", describe(error), throttled=True)
@@ -168,6 +168,10 @@ class ControllerNode(Node):
         self.status.send(report)
         return report
 
+    def may_end(self) -> bool:
+        """Whether no vehicle has to be braked first."""
+        return not self.life_cycle.must_stop
+
     def close(self) -> None:
         """Close the outputs, then leave the domain."""
         self.sender.close()
@@ -179,6 +183,7 @@ class ControllerNode(Node):
             self.logger.warning("the process stood still: it begins anew", throttled=True)
             self.inputs.drop()
         self.identity.look(now)
+        self.sender.listen()
         if self._offset is not None:
             self._offset.take()
         since = now - self._period_s if self._last_tick is None else self._last_tick
@@ -189,11 +194,19 @@ class ControllerNode(Node):
         for name in () if self.inputs.are_complete else self.inputs.missing():
             self.logger.info("Waiting for %s data", name, throttled=True, site=f"input {name}")
         blocked = self.inputs.blocked(now)
-        reason = self.identity.blocked(now)
+        reason = self._refuses(now)
         if not reason:
             return blocked
         waits = reason is Reason.DISCOVERING and blocked.reason is Reason.WAITING_FOR_INPUT
         return blocked if waits else Blocked(reason)
+
+    def _refuses(self, now: float) -> Reason:
+        """Why nothing may be sent, whatever the inputs are; NONE when it may."""
+        if self.is_ending:
+            return Reason.SHUTTING_DOWN
+        if self.sender.foreign_frames and not self.life_cycle.is_armed:  # who drives, drives on
+            return Reason.SECOND_CAN_MASTER
+        return self.identity.blocked(now)
 
     def _control(self, blocked: Blocked, now: float, start_ns: int) -> tuple[Outcome, str]:
         """From inputs that are taken to a command that is sent."""

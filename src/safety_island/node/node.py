@@ -13,6 +13,8 @@ from safety_island.dds.topics import TopicEntry
 from safety_island.node.transport import Publisher, Subscription, Transport
 from safety_island.platform.interfaces import Platform, Tick
 
+SAME_REQUEST_NS = 200_000_000
+"""A shell and ``timeout`` signal a process and its group: two requests so close are one."""
 COLLECT_EVERY = 64
 """Ticks between two looks for young garbage, each taken between ticks."""
 
@@ -42,7 +44,10 @@ class Node:
         self.clock = platform.clock
         self.logger = platform.logger
         self.transport = transport
-        self.stopping = False
+        self.is_ending = False
+        """Whether ``run`` was told to end, or has come to the end of its duration."""
+        self._stop_ns: int | None = None
+        self._is_hurried = False
         self._wake = self._nothing
 
     def publisher(self, topic: TopicEntry) -> Publisher:
@@ -59,9 +64,10 @@ class Node:
         raise NotImplementedError
 
     def run(self, period_s: float, duration_s: float | None = None) -> None:
-        """Tick every ``period_s`` until ``stop``, SIGINT or SIGTERM, or for ``duration_s``.
+        """Tick every ``period_s`` until ``stop``, SIGINT, SIGTERM or SIGHUP, or for ``duration_s``.
 
-        A tick that has begun is finished. Call from the main thread, else signals are not heard.
+        A tick that has begun is finished, and then what ``may_end`` waits for. Call from the main
+        thread, else no signal arrives.
         """
         with self.platform.on_stop(self.stop), quiet_garbage_collector():
             self._run(period_s, duration_s)
@@ -73,22 +79,36 @@ class Node:
         last_ns = self.clock.monotonic_ns()
         end_ns = math.inf if duration_s is None else last_ns + (duration_s - period_s / 2) * 1e9
         self.logger.info("%s is live, with a period of %g ms", self.name, period_s * 1e3)
-        while not self.stopping and last_ns < end_ns:
+        self.is_ending = self._stop_ns is not None or last_ns >= end_ns
+        while not (self.is_ending and (self._is_hurried or self.may_end())):
             due = timer.wait()
             if due is None:
                 continue
             self.on_tick(due)
-            last_ns = due.due_ns
+            self.is_ending |= due.due_ns >= end_ns
             if timer.ticks % COLLECT_EVERY == 0:
                 gc.collect(1)
         self._wake = self._nothing
+        self.is_ending = False
         self.logger.info("%s ends after %d ticks, %d missed", self.name, timer.ticks, timer.skipped)
         timer.close()
 
     def stop(self) -> None:
-        """End ``run`` after the present tick; may be called by a signal handler."""
-        self.stopping = True
+        """End ``run`` as soon as it may end; a second call ends it after the present tick.
+
+        May be called by a signal handler.
+        """
+        now_ns = self.clock.monotonic_ns()
+        if self._stop_ns is None:
+            self._stop_ns = now_ns
+        elif now_ns - self._stop_ns > SAME_REQUEST_NS:
+            self._is_hurried = True
+        self.is_ending = True
         self._wake()
+
+    def may_end(self) -> bool:
+        """Whether nothing is left to do before ``run`` ends."""
+        return True
 
     def close(self) -> None:
         """Leave the domain."""

@@ -24,6 +24,9 @@ class Output(Protocol):
         Never waits longer than a tenth of a period, never raises, and counts and logs why.
         """
 
+    def listen(self) -> int:
+        """Count what somebody else sends here as commands; called in every tick, never waits."""
+
     def close(self) -> None:
         """Give back what the output holds."""
 
@@ -66,6 +69,10 @@ class ControlTopic(TopicWriter):
         """Publish a command; its stamps are in it."""
         self._stands = True
         return self.write(encode_control(command))
+
+    def listen(self) -> int:
+        """Other publishers are found by discovery (Identity)."""
+        return 0
 
     def withdraw(self) -> None:
         """Take back the last command, once."""

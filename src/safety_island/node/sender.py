@@ -23,6 +23,8 @@ class CommandSender:
         self.topics: list[ControlTopic] = []
         """Those whose last command stands until it is taken back."""
         self.command: Control | None = None
+        self.foreign_frames = 0
+        """What somebody else sends as commands on the outputs, as of the last ``listen``."""
         self._clock = clock
         self._logger = logger
 
@@ -41,6 +43,18 @@ class CommandSender:
             except Exception as error:  # against its contract
                 self._failed(output, error)
         return went_out
+
+    def listen(self) -> None:
+        """Look whether somebody else sends commands, also while the island sends none."""
+        frames = 0
+        for output in self.outputs:
+            try:
+                frames += output.listen()
+            except MemoryError:
+                raise
+            except Exception as error:  # against its contract
+                self._failed(output, error)
+        self.foreign_frames = frames
 
     def _failed(self, output: Output, error: Exception) -> None:
         output.failed += 1

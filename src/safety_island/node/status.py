@@ -69,6 +69,7 @@ class StatusTopic(TopicWriter):
             report.number,
             self._commands,
             self.memory_bytes,
+            node.sender.foreign_frames,
             *errors,
             *(_NO_COMMAND if command is None or not sent else command[2:6]),
             report.tick_time_s,

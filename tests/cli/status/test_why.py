@@ -41,6 +41,26 @@ SENTENCES = {
         sample(other_control_writers=2),
         "Commands are sent, but 2 other publishers are on",
     ),
+    "a second CAN master": (
+        sample(foreign_can_frames=3),
+        "Commands are sent, but another node on the CAN bus sends the island's frames; stop it, or"
+        " the island.",
+    ),
+    "both": (
+        sample(other_control_writers=1, foreign_can_frames=3),
+        "Commands are sent, but another publisher is on /control/trajectory_follower/control_cmd,"
+        " and another node on the CAN bus sends the island's frames; stop it, or the island.",
+    ),
+    "a second CAN master while it waits": (
+        sample(**SILENT, reason=Reason.SECOND_CAN_MASTER, foreign_can_frames=3),
+        "Nothing is being published: another node on the CAN bus sends the island's frames (3"
+        " since a second without one); find and stop it; the island does not arm before.",
+    ),
+    "told to end": (
+        sample(state=State.STOP, reason=Reason.SHUTTING_DOWN),
+        "The stop ramp is being sent: the island was told to end; a vehicle that hears only CAN is"
+        " stopped first; wait until it has stopped, or tell the island again to end it at once.",
+    ),
     "with a warning": (
         sample({ODOMETRY: {"warnings": 5}}),
         "All is well, with a warning of odometry (AGE, CLOCK): the island is ACTIVE,",

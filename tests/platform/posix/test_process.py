@@ -1,4 +1,4 @@
-"""SIGINT and SIGTERM reach the callback and end a timer's wait."""
+"""SIGINT, SIGTERM and SIGHUP reach the callback and end a timer's wait."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import pytest
 from safety_island.platform import load
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_signal_ends_the_wait_of_a_timer(number: signal.Signals) -> None:
     platform = load("posix")
     timer = platform.new_timer(3600.0)
@@ -23,6 +23,16 @@ def test_a_signal_ends_the_wait_of_a_timer(number: signal.Signals) -> None:
         assert timer.wait() is None
     assert signal.getsignal(number) is before
     timer.close()
+
+
+def test_what_nohup_ignores_stays_ignored() -> None:
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    try:
+        with load("posix").on_stop(lambda: None):
+            assert signal.getsignal(signal.SIGHUP) is signal.SIG_IGN
+            assert signal.getsignal(signal.SIGTERM) is not before
+    finally:
+        signal.signal(signal.SIGHUP, before)
 
 
 def test_outside_the_main_thread_nothing_is_installed() -> None:

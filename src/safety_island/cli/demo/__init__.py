@@ -21,6 +21,7 @@ from safety_island.cli.parameters import read_parameters
 from safety_island.cli.parser import UsageError, teach
 from safety_island.cli.run_settings import HOSTED
 from safety_island.errors import IslandError
+from safety_island.platform.signals import stop_signals
 from safety_island.sim.courses import COURSES, DEFAULT_COURSE, load_course
 
 GRACE_S = 10.0
@@ -81,7 +82,8 @@ def execute(arguments: argparse.Namespace) -> int:
         raise UsageError("--domains: found the same domain twice; a bridge needs two")
     read_parameters(arguments.params, arguments.period)  # a mistake is told before anything starts
     _prepare()
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    for number in stop_signals():
+        signal.signal(number, signal.default_int_handler)
     wanted = pairs_from(*DOMAINS) if arguments.domains is None else [tuple(arguments.domains)]
     with reserve(wanted) as pair:
         if pair is None:

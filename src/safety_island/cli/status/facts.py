@@ -63,6 +63,10 @@ def _output(status: Status) -> str:
     return f"{name_of(OutputMode, status.output_mode)}, {status.output_failures} failures so far"
 
 
+def _foreign(status: Status) -> str:
+    return f"{status.foreign_can_frames} since a second without one"
+
+
 _FACTS: dict[int, Callable[[Status], str]] = {
     Reason.WAITING_FOR_INPUT: subject_facts,
     Reason.INPUT_STALE: subject_facts,
@@ -76,4 +80,5 @@ _FACTS: dict[int, Callable[[Status], str]] = {
     Reason.COMMAND_REFUSED: _guard,
     Reason.OUTPUT_FAILED: _output,
     Reason.LATCHED: _latched,
+    Reason.SECOND_CAN_MASTER: _foreign,
 }

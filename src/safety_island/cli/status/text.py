@@ -113,7 +113,7 @@ def plain_line(status: Status) -> str:
     head = f"{name_of(State, status.state):<6}  tick {status.tick}"
     if not flows(status):
         return f"{head}  {why(status)}"
-    alarm = f"  {others(status)}" if status.other_control_writers else ""
+    alarm = f"  {rivals}" if (rivals := others(status)) else ""
     alarm += "".join(f"  held: {name}" for name in held_by([status]))
     return (
         f"{head}  {command(status)}  lateral {status.lateral_error:+.3f} m"

@@ -13,7 +13,7 @@ from safety_island.cli.status.reasons import explained
 from safety_island.cli.status.samples import oldest_input, refusal_action, warned
 from safety_island.control.status import MpcStatus
 from safety_island.dds.topics import CONTROL
-from safety_island.life_cycle.reason import Explanation, Reason
+from safety_island.life_cycle.reason import EXPLANATIONS, Explanation, Reason
 from safety_island.life_cycle.state import State
 from safety_island.messages.status import NO_VALUE
 from safety_island.messages.status_fields import Status
@@ -86,8 +86,8 @@ def _troubles(status: Status, domain: Domain | None) -> list[str]:
     if status.reason != Reason.NONE:
         because = _because(status, status.reason, domain)
         return [because[0].upper() + because[1:]]
-    if status.other_control_writers:
-        return [f"Commands are sent, but {others(status)}; stop it, or the island."]
+    if rivals := others(status):
+        return [f"Commands are sent, but {rivals}; stop it, or the island."]
     return []
 
 
@@ -96,10 +96,14 @@ def _said(explanation: Explanation) -> str:
 
 
 def others(status: Status) -> str:
-    """Return who else publishes commands."""
-    count = status.other_control_writers
-    who = "another publisher is" if count == 1 else f"{count} other publishers are"
-    return f"{who} on {CONTROL.name}"
+    """Return who else sends commands; empty when nobody does."""
+    found = []
+    if count := status.other_control_writers:
+        who = "another publisher is" if count == 1 else f"{count} other publishers are"
+        found.append(f"{who} on {CONTROL.name}")
+    if status.foreign_can_frames:
+        found.append(EXPLANATIONS[Reason.SECOND_CAN_MASTER].meaning)
+    return ", and ".join(found)
 
 
 def _missed(status: Status, domain: Domain | None) -> str:

@@ -11,8 +11,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import NoReturn
 
-SIGNALS = (signal.SIGINT, signal.SIGTERM)
-
+from safety_island.platform.signals import stop_signals
 
 _PAGE = os.sysconf("SC_PAGE_SIZE")
 _STATM = Path("/proc/self/statm")
@@ -28,14 +27,14 @@ def memory_bytes() -> int:
 
 @contextmanager
 def on_stop(callback: Callable[[], None]) -> Iterator[None]:
-    """Call ``callback`` on SIGINT and SIGTERM while the context lasts.
+    """Call ``callback`` on SIGINT, SIGTERM and SIGHUP while the context lasts.
 
     Python delivers signals to the main thread alone; in another thread nothing is installed.
     """
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    before = {number: signal.signal(number, lambda *_: callback()) for number in SIGNALS}
+    before = {number: signal.signal(number, lambda *_: callback()) for number in stop_signals()}
     try:
         yield
     finally:
