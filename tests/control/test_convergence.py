@@ -42,7 +42,7 @@ def test_the_history_is_pruned_as_the_firmware_prunes_it(period: float) -> None:
     expected: list[tuple[float, float]] = []
     for i in range(120):
         now = 1000.0 + period * i
-        remember_command(lat, np.float32(i), now)
+        remember_command(PARAMS, lat, np.float32(i), now)
         expected.append((float(i), now))
         assert lat.history_filled == (now - expected[0][1] >= 1.0), "told before the pruning"
         expected = pruned(expected, now)
@@ -57,7 +57,7 @@ def test_irregular_times_leave_more_than_a_second_for_a_while() -> None:
     now = 1000.0
     for i in range(300):
         now += float(rng.choice([0.001, 0.01, 0.3, 1.2]))
-        remember_command(lat, np.float32(i), now)
+        remember_command(PARAMS, lat, np.float32(i), now)
         expected = pruned([*expected, (float(i), now)], now)
         assert history(lat) == expected
 
@@ -65,7 +65,7 @@ def test_irregular_times_leave_more_than_a_second_for_a_while() -> None:
 def test_the_history_is_bounded() -> None:
     lat = state()
     for i in range(3 * MAX_HISTORY):
-        remember_command(lat, np.float32(i), 1000.0 + 1e-4 * i)
+        remember_command(PARAMS, lat, np.float32(i), 1000.0 + 1e-4 * i)
     assert lat.history_n == MAX_HISTORY
     assert history(lat)[-1][0] == 3 * MAX_HISTORY - 1
     assert history(lat)[0][0] == 2 * MAX_HISTORY
@@ -75,14 +75,14 @@ def test_the_history_is_bounded() -> None:
 def test_commands_have_converged_within_a_hundredth(spread: float, converged: bool) -> None:
     lat = state()
     for i in range(9):
-        remember_command(lat, np.float32(spread * (i % 2)), 1000.0 + 0.15 * i)
+        remember_command(PARAMS, lat, np.float32(spread * (i % 2)), 1000.0 + 0.15 * i)
         assert bool(is_mpc_converged(PARAMS, lat)) == (converged and i >= 7), "1.05 s are known"
 
 
 def test_a_single_command_says_nothing() -> None:
     lat = state()
-    remember_command(lat, np.float32(0.1), 1000.0)
-    remember_command(lat, np.float32(0.1), 1010.0)
+    remember_command(PARAMS, lat, np.float32(0.1), 1000.0)
+    remember_command(PARAMS, lat, np.float32(0.1), 1010.0)
     assert lat.history_n == 1 and lat.history_filled
     assert not is_mpc_converged(PARAMS, lat)
 

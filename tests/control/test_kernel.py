@@ -36,7 +36,7 @@ needs_jit = pytest.mark.skipif(not kernel.JIT, reason="kernels are not compiled 
 def good() -> list[Any]:
     points = new_points()
     points[:21] = line(20.0)
-    return [pack_parameters(firmware()), points, 21]
+    return [pack_parameters(firmware()), points, 21, 0.0]
 
 
 def frozen(values: Records) -> Records:
@@ -48,7 +48,7 @@ def frozen(values: Records) -> Records:
 def test_an_entry_takes_what_it_was_declared_with() -> None:
     check_trajectory.prepare()
     assert check_trajectory.call(*good()) == Refusal.ACCEPTED
-    assert check_trajectory.arguments == (PARAMS, POINT, int)
+    assert check_trajectory.arguments == (PARAMS, POINT, int, float)
 
 
 WRONG = [
@@ -89,11 +89,19 @@ def test_only_what_the_kernel_can_take_is_bound(index: int, argument: Any) -> No
 
 
 def test_a_bound_kernel_does_the_same() -> None:
-    params, points, count = good()
+    params, points, count, start = good()
     check = check_trajectory.bind(params, points)
-    assert check(count) == check_trajectory.call(params, points, count) == Refusal.ACCEPTED
+    assert (
+        check(count, start)
+        == check_trajectory.call(params, points, count, start)
+        == Refusal.ACCEPTED
+    )
     points["x"][3] = np.nan
-    assert check(count) == check_trajectory.call(params, points, count) == Refusal.NOT_FINITE
+    assert (
+        check(count, start)
+        == check_trajectory.call(params, points, count, start)
+        == Refusal.NOT_FINITE
+    )
 
 
 @needs_jit

@@ -11,7 +11,7 @@ from safety_island.control.limits import MAX_HISTORY
 from safety_island.control.longitudinal_history import (
     predict_after_delay,
     store_command,
-    store_speed,
+    store_speed_last,
 )
 from safety_island.control.longitudinal_state import LONGITUDINAL_STATE
 from safety_island.control.records import INPUTS
@@ -160,7 +160,7 @@ def test_a_clock_that_stands_still_does_not_overflow_the_memories(p: Any) -> Non
 def test_speeds_are_kept_by_count(period: float, delay: float, kept: int) -> None:
     p, s = packed(ctrl_period=period, delay_compensation_time=delay)[0], fresh()
     for i in range(MAX_HISTORY + 9):
-        store_speed(p, s, -0.5 * i, NOW + i)
+        store_speed_last(p, s, -0.5 * i, NOW + i)
     assert s.speeds_n == kept
     newest = MAX_HISTORY + 8
     assert list(s.speeds_v[:kept]) == [-0.5 * i for i in range(newest - kept + 1, newest + 1)]

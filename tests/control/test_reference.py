@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from safety_island.control.limits import MAX_REFERENCE
+from safety_island.control.limits import EXTENSION_POINTS, MAX_REFERENCE
 from safety_island.control.records import Records
 from safety_island.control.status import MpcStatus
 from tests.control.lateral_rig import (
@@ -164,7 +164,7 @@ def test_the_thresholds_keep_the_ego_on_its_own_branch() -> None:
 
 
 def test_the_longest_path_that_is_accepted_fits() -> None:
-    length = (MAX_REFERENCE - 256) * STEP
+    length = (MAX_REFERENCE - EXTENSION_POINTS) * STEP
     rig = on_path(make_points(np.linspace(0.0, length - 1e-6, 4096)))
     for x in (0.0, 700.05, length):
         rig.place(x)

@@ -314,8 +314,10 @@ def test_a_drive_over_dirty_points_is_the_drive_over_clean_ones() -> None:
     clean, dirty = TrajectoryFollower(firmware()), TrajectoryFollower(firmware())
     offer = dirty.offer_trajectory
 
-    def each_twice(points: Records, stamp: float) -> Refusal:
-        return offer(np.concatenate([np.repeat(points, 2), np.repeat(points[-1:], 9)]), stamp)
+    def each_twice(points: Records, stamp: float, start: float = 0.0) -> Refusal:
+        return offer(
+            np.concatenate([np.repeat(points, 2), np.repeat(points[-1:], 9)]), stamp, start
+        )
 
     dirty.offer_trajectory = each_twice  # type: ignore[method-assign]
     for (_, now), _ in zip(played(run, clean), played(run, dirty), strict=True):

@@ -73,7 +73,7 @@ class FakeFollower:
             self.absent.remove(name)
         return self.refusal
 
-    def offer_incoming(self, n: int, stamp: float) -> Refusal:
+    def offer_incoming(self, n: int, stamp: float, start: float = 0.0) -> Refusal:
         return self._offer("trajectory", self.incoming["x"][:n].tolist(), stamp)
 
     def offer_odometry(self, *values: float) -> Refusal:
@@ -84,6 +84,11 @@ class FakeFollower:
 
     def offer_acceleration(self, ax: float) -> Refusal:
         return self._offer("acceleration", ax)
+
+    def offer_steering_offset(self, offset: float) -> Refusal:
+        """Accept anything."""
+        self.steering_offset = offset
+        return Refusal.ACCEPTED
 
     def offer_operation_mode(self, mode: int, enabled: bool) -> Refusal:
         return self._offer("operation mode", mode, enabled)

@@ -32,8 +32,10 @@ def test_it_is_accepted_and_told(tmp_path: Path, key: str) -> None:
     ("line", "told"),
     [
         ("use_sim_time: true", "found true (a switch); only false is built in"),
-        ("ff_scale_max: 1.5", "found 1.5 (a number); only 2.0 is built in"),
-        ("trajectory_reference_mode: temporal", "found the text 'temporal'; only spatial"),
+        (
+            "use_trajectory_steering_for_feedforward: true",
+            "found true (a switch); only false is built in",
+        ),
     ],
 )
 def test_what_would_change_the_controller_is_refused(tmp_path: Path, line: str, told: str) -> None:

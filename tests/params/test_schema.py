@@ -39,6 +39,7 @@ def test_every_dimension_has_a_unit(known: Known) -> None:
         "correct_",
         "pass_",
         "_ratio",
+        "ff_scale_",
     )
     is_plain = known.kind in ("bool", "str") or any(word in known.key for word in plain)
     assert bool(known.unit) != is_plain

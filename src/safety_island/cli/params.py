@@ -54,6 +54,7 @@ def execute(arguments: argparse.Namespace) -> int:
     if arguments.json:
         print(json.dumps([dataclasses.asdict(row) for row in rows], indent=2))
     else:
+        print(f"{loaded.release}\n")
         print("\n".join(lines(rows, arguments.doc)))
     return 0
 
@@ -74,8 +75,9 @@ def lines(rows: Iterable[Row], doc: bool) -> Iterable[str]:
 
 
 def _report_check(loaded: Loaded, words: Sequence[str]) -> None:
-    for ignored in loaded.ignored:
-        print(f"note: {ignored}")
+    print(f"note: {loaded.release}")
+    for line in (*loaded.translated, *loaded.ignored):
+        print(f"note: {line}")
     for note in notes(loaded.parameters):
         print(f"note: {note}")
     print(f"{', '.join(words)}: no mistake found")

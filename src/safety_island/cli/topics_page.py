@@ -21,7 +21,7 @@ from safety_island.control.limits import MAX_POINTS
 from safety_island.control.point_list import SAME_PLACE
 from safety_island.control.trajectory_clean import MAX_YAW_OFF, REACH
 from safety_island.dds.names import dds_topic_name
-from safety_island.dds.topics import OWN, TOPICS, TopicEntry
+from safety_island.dds.topics import OWN, STEERING_OFFSET, TOPICS, TopicEntry
 from safety_island.messages.registry import dds_type_name
 from safety_island.params import load_set
 from safety_island.params.schema import values_of
@@ -53,6 +53,15 @@ status answers: `island arm` sends one. Both types stand as `.msg` files in
 `src/safety_island/messages/msg`.
 """
 
+
+NEWER = """\
+## Names of newer releases
+
+With the rules of a newer Autoware (`autoware_release`, see [parameters](parameters.md)) the island
+uses that release's names. The offset of the steering sensor is an input of its own since 0.51: the
+island subscribes to it when `steering_offset.enable_auto_steering_offset_removal` is true, no tick
+waits for it, and a value that is not finite or beyond `steering_offset.input_limit` is refused.
+"""
 
 _NORMS = f"{MIN_SQUARE_NORM**0.5:g} to {MAX_SQUARE_NORM**0.5:g}"
 
@@ -104,10 +113,24 @@ def render() -> str:
     return (
         f"{INTRODUCTION}\n{_table(TOPICS)}\n\n"
         f"{OWN_TOPICS}\n{_table(OWN)}\n\n"
+        f"{NEWER}\n{_newer_names()}\n\n"
         f"{BOUNDS}\n"
         "## As DDS tools show them\n\n"
         f"| ROS topic | DDS topic | DDS type |\n| --- | --- | --- |\n{names}\n"
     )
+
+
+def _newer_names() -> str:
+    """Return the table of topics that a release named anew, and of the one that it added."""
+    rows = ["| since | topic and type | instead of |", "| --- | --- | --- |"]
+    for entry in TOPICS:
+        for since, name, kind in entry.newer:
+            rows.append(
+                f"| {since} | `{name}`<br>`{kind}` | `{entry.name}`<br>`{entry.type_name}` |"
+            )
+    offset = STEERING_OFFSET
+    rows.append(f"| 0.51 | `{offset.name}`<br>`{offset.type_name}` | new |")
+    return "\n".join(rows)
 
 
 def _table(entries: Sequence[TopicEntry]) -> str:

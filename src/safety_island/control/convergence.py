@@ -2,6 +2,7 @@
 
 import math
 
+from safety_island.control.geometry import time_since
 from safety_island.control.kernel import kernel
 from safety_island.control.limits import MAX_HISTORY, MAX_SHAPE_HISTORY
 
@@ -52,7 +53,7 @@ def has_shape_changed(params, points, inputs, lat):
 
 
 @kernel
-def remember_command(lat, angle, now):
+def remember_command(params, lat, angle, now):
     """Append a command to the history of about one second.
 
     An entry is dropped only when the one behind it is old too, as the firmware's loop has it.
@@ -64,11 +65,17 @@ def remember_command(lat, angle, now):
     lat.history_u[n] = angle
     lat.history_t[n] = now
     lat.history_n = n + 1
-    lat.history_filled = now - lat.history_t[0] >= _HISTORY_SECONDS
+    lat.history_filled = time_since(params, now, lat.history_t[0]) >= _HISTORY_SECONDS
     i = 0
-    while i < lat.history_n and now - lat.history_t[i] >= _HISTORY_SECONDS:
+    while i < lat.history_n and _is_old(params, time_since(params, now, lat.history_t[i])):
         _forget_commands(lat)
         i += 1
+
+
+@kernel
+def _is_old(params, age):
+    """Whether a command of this age [s] is dropped from the history."""
+    return age > _HISTORY_SECONDS if params.history_exceeds_second else age >= _HISTORY_SECONDS
 
 
 @kernel

@@ -58,7 +58,7 @@ _MPC_STATUS = {int(status): status for status in MpcStatus}
 """A look here takes a tenth of the time of ``MpcStatus(number)``."""
 _POSE_AND_SPEED = Struct("=10d")
 """The first columns of INPUTS, from x to wz."""
-_PATH = Struct("=2qd")
+_PATH = Struct("=2q2d")
 """The last ones: n_points, trajectory_id, trajectory_stamp."""
 
 
@@ -71,7 +71,7 @@ class _Path(NamedTuple):
     """Memory of a trajectory, and the kernels that read it."""
 
     points: Records
-    check: Callable[[int], int]
+    check: Callable[[int, float], int]
     clean: Callable[[int], int]
     lateral: Callable[[float], int]
     longitudinal: Callable[[float], int]
@@ -97,6 +97,8 @@ class TrajectoryFollower:
         reset_longitudinal_trace(self.trace)
         cell, memory = cells(self.inputs), self.inputs.view(np.uint8).data
         self._steer, self._ax = cell["steer"], cell["ax"]
+        self._offset = cell["steering_offset"]
+        self._offset_limit = parameters.lateral.steering_offset_input_limit
         self._mode, self._enabled = cell["mode"], cell["enabled"]
         self._write_pose = partial(_POSE_AND_SPEED.pack_into, memory, 0)
         self._write_path = partial(_PATH.pack_into, memory, INPUTS.fields["n_points"][1])
@@ -153,19 +155,22 @@ class TrajectoryFollower:
 
     # Inputs: each returns why it was refused, or ACCEPTED.
 
-    def offer_trajectory(self, points: Records, stamp: float) -> Refusal:
-        """Offer ``points`` (POINT records) with the stamp [s] of their header."""
+    def offer_trajectory(self, points: Records, stamp: float, start: float = 0.0) -> Refusal:
+        """Offer ``points`` (POINT records) with the stamp [s] of their header; see below."""
         if len(points) > MAX_POINTS:
             return Refusal.TOO_MANY_POINTS
         self.incoming[: len(points)] = points
-        return self.offer_incoming(len(points), stamp)
+        return self.offer_incoming(len(points), stamp, start)
 
-    def offer_incoming(self, n: int, stamp: float) -> Refusal:
-        """Offer the first ``n`` points of ``incoming``, into which a decoder may write directly."""
+    def offer_incoming(self, n: int, stamp: float, start: float = 0.0) -> Refusal:
+        """Offer the first ``n`` points of ``incoming``, into which a decoder may write directly.
+
+        ``stamp`` [s] is that of the header, ``start`` [s] the time_from_start of the first point.
+        """
         if not math.isfinite(stamp):
             return Refusal.NOT_FINITE
         turned = 0
-        if refusal := self._next.check(n):
+        if refusal := self._next.check(n, start):
             if refusal == Refusal.NEEDS_CLEANING:
                 refusal = self._next.clean(n)
                 n, turned = self._cleaned[0].tolist()
@@ -174,7 +179,7 @@ class TrajectoryFollower:
         self._now, self._next = self._next, self._now
         self.turned_points = turned
         self._paths += 1
-        self._write_path(n, self._paths, stamp)
+        self._write_path(n, self._paths, stamp, start)
         self._has_path = self._has_path or n >= _FEWEST_FOR_MPC
         self._missing.discard("trajectory")
         return _ACCEPTED
@@ -227,6 +232,13 @@ class TrajectoryFollower:
             return _refusal_of(ax)
         self._ax[0] = ax
         self._missing.discard("acceleration")
+        return _ACCEPTED
+
+    def offer_steering_offset(self, offset: float) -> Refusal:
+        """Offer the offset of the steering sensor [rad]; no tick waits for one."""
+        if not abs(offset) <= self._offset_limit:
+            return _refusal_of(offset)
+        self._offset[0] = offset
         return _ACCEPTED
 
     def offer_operation_mode(self, mode: int, enabled: bool) -> Refusal:

@@ -33,6 +33,12 @@ def yaw_of(qx, qy, qz, qw):
 
 
 @kernel
+def time_since(p, now, then):
+    """Time [s] from ``then`` to ``now``; by rule as a clock of whole nanoseconds has it."""
+    return np.rint((now - then) * 1e9) / 1e9 if p.whole_nanoseconds else now - then
+
+
+@kernel
 def diff_limit(new, previous, dt, low, high):
     """Limit the rate of change from ``previous`` to ``new`` to [low, high] a second."""
     return previous + clip((new - previous) / dt, low, high) * dt

@@ -8,10 +8,10 @@ is checked here and, where its points have flaws that its path has not, cleaned 
 import math
 
 from safety_island.control.kernel import entry, kernel
-from safety_island.control.limits import MAX_POINTS, MAX_REFERENCE
-from safety_island.control.points import advance
+from safety_island.control.limits import EXTENSION_POINTS, MAX_POINTS, MAX_REFERENCE
+from safety_island.control.points import advance, time_of
 from safety_island.control.records import PARAMS, POINT
-from safety_island.control.status import Refusal
+from safety_island.control.status import ReferenceMode, Refusal
 
 MAX_POSITION = 1e7
 """[m]; a UTM northing stays below it."""
@@ -43,6 +43,8 @@ _TOO_LONG = int(Refusal.TOO_LONG)
 _OUT_OF_RANGE = int(Refusal.OUT_OF_RANGE)
 _MIXED = int(Refusal.MIXED_DIRECTION)
 _NEEDS_CLEANING = int(Refusal.NEEDS_CLEANING)
+_BAD_TIMES = int(Refusal.BAD_TIMES)
+_TEMPORAL = int(ReferenceMode.TEMPORAL)
 
 _LARGEST_PART = 2.0  # of a quaternion; the square of a larger one could overflow
 _FEWEST_POINTS = 2
@@ -52,7 +54,6 @@ _LEANS = 0.5
 """Tangent of the angle between step and orientation, beyond which it is looked at closely."""
 _LEANS_NEAR = 0.05
 """The same for points that are NEAR, where the flaws of splines begin."""
-_EXTENSION_POINTS = 256  # room for the points that the terminal extension appends
 
 
 @kernel
@@ -111,21 +112,61 @@ def _length(points, n):
 @kernel
 def has_room(params, points, n):
     """Whether the resampled trajectory fits its memory."""
-    room = (MAX_REFERENCE - _EXTENSION_POINTS) * params[0].traj_resample_dist
+    room = (MAX_REFERENCE - EXTENSION_POINTS) * params[0].traj_resample_dist
     return _length(points, n) <= room
 
 
-@entry(PARAMS, POINT, int)
-def check_trajectory(params, points, n):
+@kernel
+def _checked_length(params, points, n, bound):
+    """TOO_LONG where the resampled trajectory does not fit; ``bound`` [m]: at least its length."""
+    room = (MAX_REFERENCE - EXTENSION_POINTS) * params[0].traj_resample_dist
+    return _TOO_LONG if bound > room and not has_room(params, points, n) else _ACCEPTED
+
+
+@kernel
+def leads_both_ways(points, n):
+    """Whether the points lead to and fro, in steps beyond noise."""
+    forward = 0.0
+    backward = 0.0
+    last = 0
+    for i in range(1, n):
+        dx = points[i].x - points[last].x
+        dy = points[i].y - points[last].y
+        if dx * dx + dy * dy >= NEAR * NEAR:
+            way, _ = advance(points[last], dx, dy)
+            forward += max(way, 0.0)
+            backward += max(-way, 0.0)
+            last = i
+    return min(forward, backward) > MAX_BACKTRACK
+
+
+def _has_ascending_times(points, n, start):
+    """Whether each point is due later than the one before."""
+    previous = start
+    for i in range(1, n):
+        time = time_of(points, i, start)
+        if not time > previous:
+            return False
+        previous = time
+    return True
+
+
+@entry(PARAMS, POINT, int, float)
+def check_trajectory(params, points, n, start):
     """Refusal of a received trajectory ``points[:n]``; nearly unit orientations become units.
 
-    A trajectory leads forward or backward, not both, and so do its speeds. NEEDS_CLEANING: every
-    value is fine, and ``clean_trajectory`` decides.
+    ``start`` [s] is the time_from_start of the first point. A trajectory leads forward or backward,
+    not both, and so do its speeds. NEEDS_CLEANING: every value is fine, and ``clean_trajectory``
+    decides; never in the temporal mode, where points may coincide (the vehicle waits there), and
+    where times must ascend.
     """
     if n < _FEWEST_POINTS:
         return _TOO_FEW
     if n > MAX_POINTS:
         return _TOO_MANY
+    is_timed = params[0].trajectory_reference_mode == _TEMPORAL
+    if is_timed and not _has_ascending_times(points, n, start):
+        return _BAD_TIMES
     bound = 0.0  # at least the length of the path
     forward = False
     backward = False
@@ -150,10 +191,12 @@ def check_trajectory(params, points, n):
             is_clean &= not leans(dx, dy, way, side)
     if min(fastest, -slowest) > STANDSTILL:
         return _MIXED
+    if is_timed:
+        is_clean = not leads_both_ways(points, n)
+        return _checked_length(params, points, n, bound) if is_clean else _MIXED
     way, side = advance(points[n - 1], dx, dy)
     forward |= way > 0.0
     backward |= way < 0.0
     if not is_clean or leans(dx, dy, way, side) or (forward and backward):
         return _NEEDS_CLEANING
-    room = (MAX_REFERENCE - _EXTENSION_POINTS) * params[0].traj_resample_dist
-    return _TOO_LONG if bound > room and not has_room(params, points, n) else _ACCEPTED
+    return _checked_length(params, points, n, bound)

@@ -13,17 +13,19 @@ from safety_island.control.geometry import clip, yaw_of
 from safety_island.control.kernel import entry, kernel
 from safety_island.control.lateral_state import LATERAL_STATE
 from safety_island.control.mpc import finish_mpc, prepare_mpc
-from safety_island.control.points import nearest_index
+from safety_island.control.points import distance_2d, nearest_index
 from safety_island.control.qp_records import QP
 from safety_island.control.records import COMMAND, INPUTS, PARAMS, POINT, TRACE
 from safety_island.control.reference import accept_source, update_reference
+from safety_island.control.reference_temporal import accept_timed
 from safety_island.control.solver import solve, tell_solver
-from safety_island.control.status import Mode, MpcStatus
-from safety_island.control.steering_offset import update_offset
+from safety_island.control.status import Mode, MpcStatus, ReferenceMode
+from safety_island.control.steering_offset import follow_offset, update_offset
 
 _SOLVED = int(MpcStatus.SOLVED)
 _NO_REFERENCE = int(MpcStatus.NO_REFERENCE)
 _AUTONOMOUS = int(Mode.AUTONOMOUS)
+_TEMPORAL = int(ReferenceMode.TEMPORAL)
 _FEWEST_POINTS = 3
 
 
@@ -32,19 +34,27 @@ def _set_trajectory(params, points, inputs, lat):
     """Take the trajectory in force as the reference, or keep the old one when it is too short."""
     if inputs.n_points < _FEWEST_POINTS:
         return
+    is_timed = params.trajectory_reference_mode == _TEMPORAL
     if lat.source_id != inputs.trajectory_id:
-        accept_source(params, points, inputs.n_points, lat)
+        if is_timed:
+            accept_timed(params, points, inputs, lat)
+        else:
+            accept_source(params, points, inputs.n_points, lat)
         lat.source_id = inputs.trajectory_id
         last = points[inputs.n_points - 1]
         remember_end(params, lat, last.x, last.y, inputs.trajectory_stamp)
-    update_reference(params, points, inputs, lat)
+    if not is_timed:
+        update_reference(params, points, inputs, lat)
 
 
 @kernel
 def _measure(params, inputs, lat):
-    """Note the measured angle, less the estimated offset, and who is in control."""
+    """Note the measured angle without the sensor's offset, and who is in control."""
     lat.measured = inputs.steer
-    if params.steering_offset_enable_auto_steering_offset_removal:
+    if params.steering_offset_is_input:
+        follow_offset(params, lat, inputs.steering_offset)
+        lat.measured = np.float32(inputs.steer + np.float32(lat.offset))
+    elif params.steering_offset_enable_auto_steering_offset_removal:
         lat.measured = np.float32(inputs.steer - lat.offset)
     lat.is_under_control = inputs.enabled and inputs.mode == _AUTONOMOUS
     if not lat.cmd_prev_valid or not lat.is_under_control:
@@ -66,9 +76,28 @@ def _prepare(params, points, inputs, lat, qp, trace, now):
 
 
 @kernel
+def _slowest_ahead(points, n, start, look_ahead):
+    """Lowest signed speed [m/s] from point ``start`` to the first one beyond ``look_ahead`` [m].
+
+    In reverse the lowest is the fastest, so looking ahead acts in forward driving only.
+    Autoware: MpcLateralController::isStoppedState.
+    """
+    slowest = points[start].v
+    distance = 0.0
+    i = start + 1
+    while i < n and distance <= look_ahead and look_ahead > 0.0:
+        distance += distance_2d(points[i - 1], points[i])
+        slowest = min(slowest, points[i].v)
+        i += 1
+    return slowest
+
+
+@kernel
 def _is_stopped(params, points, inputs, lat):
     """Whether vehicle and trajectory stand still and the steering has come to rest."""
-    if abs(inputs.vx) >= params.stop_state_entry_ego_speed:
+    speed = abs(inputs.vx)
+    limit = params.stop_state_entry_ego_speed
+    if speed > limit or (speed == limit and not params.threshold_counts_as_stopped):
         return False
     yaw = yaw_of(inputs.qx, inputs.qy, inputs.qz, inputs.qw)
     nearest = nearest_index(
@@ -80,7 +109,8 @@ def _is_stopped(params, points, inputs, lat):
         params.ego_nearest_dist_threshold,
         params.ego_nearest_yaw_threshold,
     )
-    if abs(points[nearest].v) >= params.stop_state_entry_target_speed:
+    target = _slowest_ahead(points, inputs.n_points, nearest, params.stopped_look_ahead)
+    if abs(target) >= params.stop_state_entry_target_speed:
         return False
     if not params.keep_steer_control_until_converged:
         return True
@@ -120,10 +150,13 @@ def _command_angle(params, inputs, lat, qp, trace, solved, now):
     if solved:
         angle, rate = finish_mpc(params, lat, qp, trace, now)
     if solved and lat.is_under_control:
-        remember_command(lat, angle, now)
+        remember_command(params, lat, angle, now)
     else:
         _reset_raw(params, lat)
-    if params.steering_offset_enable_auto_steering_offset_removal:
+    if params.steering_offset_is_input:
+        if solved:
+            angle = np.float32(angle - np.float32(lat.offset))
+    elif params.steering_offset_enable_auto_steering_offset_removal:
         update_offset(params, lat, inputs.vx, inputs.wz, inputs.steer)
         if solved:
             angle = np.float32(angle + lat.offset)

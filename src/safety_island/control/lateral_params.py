@@ -82,36 +82,57 @@ class LateralParams:
         "s", "Dead time of the steering, rounded to whole control periods.", 0.0, 5.0
     )
     steering_offset_enable_auto_steering_offset_removal: bool = switch(
-        "Estimate the offset of the steering sensor and take it away.",
+        "Take the offset of the steering sensor away: estimated, since 0.51 as a topic tells it.",
         key="steering_offset.enable_auto_steering_offset_removal",
     )
     steering_offset_update_vel_threshold: float = parameter(
         "m/s",
-        "Speed above which the offset is estimated.",
+        "Speed above which the offset is estimated (until 0.50).",
         0.0,
         60.0,
         key="steering_offset.update_vel_threshold",
     )
     steering_offset_update_steer_threshold: float = parameter(
         "rad",
-        "Tyre angle below which it is estimated.",
+        "Tyre angle below which it is estimated (until 0.50).",
         0.0,
         1.5,
         key="steering_offset.update_steer_threshold",
     )
     steering_offset_steering_offset_limit: float = parameter(
         "rad",
-        "Largest offset, either side.",
+        "Largest estimated offset, either side (until 0.50).",
         0.0,
         0.5,
         key="steering_offset.steering_offset_limit",
     )
     steering_offset_average_num: int = parameter(
         "samples",
-        "Samples that are averaged.",
+        "Samples that are averaged (until 0.50).",
         1,
         MAX_OFFSET_SAMPLES,
         key="steering_offset.average_num",
+    )
+    steering_offset_steer_offset_filter_cutoff_hz: float = parameter(
+        "Hz",
+        "Cutoff of the low pass on an offset that comes from a topic (since 0.51).",
+        0.01,
+        1000.0,
+        key="steering_offset.steer_offset_filter_cutoff_hz",
+    )
+    steering_offset_max_update_th: float = parameter(
+        "rad",
+        "Largest step of an offset that comes from a topic (since 0.51).",
+        0.0,
+        0.5,
+        key="steering_offset.max_update_th",
+    )
+    steering_offset_input_limit: float = parameter(
+        "rad",
+        "Largest offset, either side, that is accepted from a topic (since 0.51).",
+        0.0,
+        0.5,
+        key="steering_offset.input_limit",
     )
     steering_lpf_cutoff_hz: float = parameter(
         "Hz", "Cutoff of the low pass on the steering command.", 0.01, 1000.0

@@ -3,6 +3,7 @@
 import numpy as np
 
 from safety_island.control.limits import (
+    EXTENSION_POINTS,
     MAX_DELAY_STEPS,
     MAX_HISTORY,
     MAX_HORIZON,
@@ -19,6 +20,7 @@ _SKEW = 40
 """Numbers between two long columns, five lines of a cache: columns that lie a power of two apart
 share their places in the cache, and a tick that reads twenty of them would displace its own."""
 _SOURCE = MAX_POINTS + _SKEW
+_TIMED = MAX_POINTS + EXTENSION_POINTS + 2 + _SKEW
 _LONGEST = MAX_REFERENCE + 2 + _SKEW  # the reference with its two closing duplicates
 
 FILTER = [
@@ -59,6 +61,13 @@ REFERENCE_COLUMNS = [
     ("smooth", "f8", (_LONGEST,)),  # work memory of the moving average
     ("anchor", "i8"),  # index of the ego's projection
     ("is_forward", "?"),
+    ("is_timed", "?"),  # the points are as received, each with its time, yaw and curvature:
+    ("rt", "f8", (_TIMED,)),  # time_from_start [s]
+    ("ryaw", "f8", (_TIMED,)),  # [rad]
+    ("rk", "f8", (_TIMED,)),  # curvature [1/m] over ``curvature_reach`` points
+    ("rks", "f8", (_TIMED,)),  # curvature for the feed-forward [1/m]
+    ("curvature_reach", "i8"),
+    ("one_sided_ends", "?"),  # the rule of that name, for those who have no parameters
 ]
 
 PREDICTION_COLUMNS = [
@@ -102,7 +111,7 @@ MEMORY_COLUMNS = [
     ("raw_pprev", "f8"),
     ("delay_n", "i8"),  # entries of the input delay buffer
     ("delay", "f4", (MAX_DELAY_STEPS,)),  # oldest first [rad]
-    ("measured", "f4"),  # tyre angle of this tick, less the estimated offset [rad]
+    ("measured", "f4"),  # tyre angle of this tick, without the offset of the sensor [rad]
     ("is_under_control", "?"),
     # steering predictor
     ("predictor_n", "i8"),
@@ -111,8 +120,10 @@ MEMORY_COLUMNS = [
     ("predictor_time", "f8"),
     ("predictor_started", "?"),
     ("predicted", "f8"),
-    # steering offset
-    ("offset", "f8"),
+    # steering offset [rad]
+    ("offset", "f8"),  # in force
+    ("offset_target", "f8"),  # that it follows, when it comes from a topic
+    ("offset_filter", record(FILTER)),
     ("offset_sum", "f8"),
     ("offset_head", "i8"),
     ("offset_samples", "f8", (MAX_OFFSET_SAMPLES,)),

@@ -6,13 +6,16 @@ MAX_POINTS = 4096
 MAX_REFERENCE = 16384
 """Points of the resampled reference path (1.6 km at the usual 0.1 m)."""
 
+EXTENSION_POINTS = 512
+"""Room for the points that the terminal extension appends (10 m at 0.02 m)."""
+
 MAX_HORIZON = 64
 """Steps of the MPC."""
 
 MAX_DELAY_STEPS = 64
 """Control periods of input delay that the MPC compensates."""
 
-MAX_RATE_TABLE = 8
+MAX_RATE_TABLE = 32
 """Entries of a steering-rate-limit table."""
 
 MAX_HISTORY = 256

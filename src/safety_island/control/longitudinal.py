@@ -10,7 +10,11 @@ from safety_island.control.longitudinal_command import (
     raw_command,
     stopped_acceleration,
 )
-from safety_island.control.longitudinal_history import store_command, store_speed
+from safety_island.control.longitudinal_history import (
+    store_command,
+    store_speed_first,
+    store_speed_last,
+)
 from safety_island.control.longitudinal_machine import advance_state
 from safety_island.control.longitudinal_state import LONGITUDINAL_STATE
 from safety_island.control.longitudinal_target import (
@@ -61,10 +65,10 @@ def clear_flags(t):
 
 
 @kernel
-def far_tick(p, s, work, t):
+def far_tick(p, u, s, work, t):
     """Emergency command while the ego is far from its trajectory; only coming near ends it."""
     s.nearest = find_pose(p, work, s.n, s.ego_point)
-    set_stop_distance(s, work)
+    set_stop_distance(p, u, s, work)
     if p.enable_large_tracking_error_emergency:
         s.state = EMERGENCY
     emergency_command(p, s, t)
@@ -79,7 +83,7 @@ def near_tick(p, u, s, work, segment, now, t):
     """State update and command while the ego is near its trajectory; return the speed [m/s]."""
     locate_target(p, u, s, work, segment, now)
     update_gear(s, work)
-    set_stop_distance(s, work)
+    set_stop_distance(p, u, s, work)
     update_slope(p, u, s, work)
     nearest_v = np.float64(work[s.nearest].v)
     advance_state(p, s, u.vx, nearest_v, now, t)
@@ -126,16 +130,17 @@ def longitudinal_tick(params, points, inputs, state, work, command, trace, now):
     clear_flags(t)
     if not is_usable(u, now):
         return NOT_USABLE
-    segment = locate_ego(p, u, s, points, work)
+    segment = locate_ego(p, u, s, points, work, now)
     if segment < 0:
         return NO_TRAJECTORY
     s.dt = period_since(p, s, now)
     s.under_control = u.enabled and u.mode == AUTONOMOUS
+    store_speed_first(p, s, u.vx, now)
     if is_far(p, u, s, t):
-        velocity = far_tick(p, s, work, t)
+        velocity = far_tick(p, u, s, work, t)
     else:
         velocity = near_tick(p, u, s, work, segment, now, t)
-    store_speed(p, s, u.vx, now)
+    store_speed_last(p, s, u.vx, now)
     tell(s, t)
     command[0].velocity = np.float32(velocity)
     command[0].acceleration = np.float32(s.prev_acc)

@@ -4,10 +4,10 @@ import math
 
 import numpy as np
 
-from safety_island.control.geometry import clip, diff_limit
+from safety_island.control.geometry import clip, diff_limit, time_since
 from safety_island.control.kernel import kernel
 from safety_island.control.pid import low_pass, pid_step
-from safety_island.control.slope import slope_acceleration
+from safety_island.control.slope import slope_acceleration, slope_pull
 from safety_island.control.smooth_stop import smooth_stop_acc, smooth_stop_mode
 from safety_island.control.status import LongitudinalState
 from safety_island.control.trajectory_walk import stop_index
@@ -30,8 +30,9 @@ def integration_enabled(p, s, v, now):
         return False
     if abs(v) > p.current_vel_threshold_pid_integration:
         return True
-    waited = now - s.under_control_since >= p.time_threshold_before_pid_integration
-    return p.enable_integration_at_low_speed and waited
+    waited = time_since(p, now, s.under_control_since)
+    is_stuck = waited >= p.time_threshold_before_pid_integration
+    return p.enable_integration_at_low_speed and is_stuck
 
 
 @kernel
@@ -43,7 +44,7 @@ def speed_feedback(p, s, target, v, now, t):
     integrate = integration_enabled(p, s, v, now)
     pid_acc, t.pid_p, t.pid_i, t.pid_d = pid_step(p, s.pid, s.vel_error, s.dt, integrate)
     t.err_vel_filtered = s.vel_error
-    t.ff_scale = clip(abs(v) / max(abs(target_v), 0.1), 0.5, 2.0)
+    t.ff_scale = clip(abs(v) / max(abs(target_v), 0.1), p.ff_scale_min, p.ff_scale_max)
     t.acc_ff = np.float64(target.acc) * t.ff_scale
     t.acc_pid_applied = t.acc_ff + pid_acc
     return t.acc_pid_applied
@@ -114,13 +115,13 @@ def raw_command(p, u, s, work, now, t):
 def moving_acceleration(p, u, s, t):
     """Raw acceleration with acceleration feedback and slope compensation [m/s^2].
 
-    The measured acceleration counts in the direction of body x; in reverse the firmware does not
-    turn its sign into the gear's, ``correct_reverse_signs`` does.
+    The measured acceleration counts in the direction of body x; only by rule its sign is turned
+    into the gear's.
     """
-    measured = -u.ax if p.correct_reverse_signs and not s.gear_forward else u.ax
+    measured = -u.ax if p.feedback_turns_in_reverse and not s.gear_forward else u.ax
     s.acc_error = low_pass(s.acc_error, p.lpf_acc_error_gain, measured - s.raw_acc)
     t.acc_fb_applied = s.raw_acc - s.acc_error * p.acc_feedback_gain
-    t.acc_slope_applied = t.acc_fb_applied + slope_acceleration(p, u, s)
+    t.acc_slope_applied = t.acc_fb_applied + slope_acceleration(p, s)
     t.pitch_limited = p.enable_slope_compensation and not (
         p.min_pitch_rad <= s.slope <= p.max_pitch_rad
     )
@@ -129,13 +130,15 @@ def moving_acceleration(p, u, s, t):
 
 @kernel
 def stopped_acceleration(p, s, t):
-    """Braking that holds the vehicle [m/s^2]; the raw command's memory starts anew."""
+    """Braking that holds the vehicle [m/s^2]; the raw command's memory is reset."""
     s.raw_vel = 0.0
     s.raw_acc = 0.0
     t.acc_acc_limited = p.stopped_acc
     t.acc_jerk_limited = p.stopped_acc
     t.acc_slope_applied = p.stopped_acc
-    return p.stopped_acc
+    if p.stopped_adds_slope and p.enable_slope_compensation:
+        t.acc_slope_applied = p.stopped_acc - abs(slope_pull(p, s))
+    return t.acc_slope_applied
 
 
 @kernel

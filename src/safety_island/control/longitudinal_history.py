@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from safety_island.control.geometry import whole_nanoseconds
+from safety_island.control.geometry import time_since, whole_nanoseconds
 from safety_island.control.kernel import kernel
 from safety_island.control.limits import MAX_HISTORY
 from safety_island.control.status import LongitudinalState, Mode
@@ -30,23 +30,44 @@ def store_command(p, s, now):
         return
     if s.commands_n == MAX_HISTORY:
         s.commands_n = forget_oldest(s.commands_acc, s.commands_stamp, s.commands_n)
-    s.commands_acc[s.commands_n] = np.float32(s.raw_acc)
-    s.commands_stamp[s.commands_n] = whole_nanoseconds(now)
+    acc = s.raw_acc
+    s.commands_acc[s.commands_n] = acc if p.double_command_history else np.float64(np.float32(acc))
+    s.commands_stamp[s.commands_n] = now if p.whole_nanoseconds else whole_nanoseconds(now)
     s.commands_n += 1
-    if s.commands_n > 2 and now - s.commands_stamp[1] > p.delay_compensation_time:
+    since_second = time_since(p, now, s.commands_stamp[1])
+    if s.commands_n > 2 and since_second > p.delay_compensation_time:
         s.commands_n = forget_oldest(s.commands_acc, s.commands_stamp, s.commands_n)
 
 
 @kernel
-def store_speed(p, s, vx, now):
-    """Remember the measured speed; the newest ``delay / period`` entries stay."""
+def _append_speed(s, vx, now):
+    s.speeds_v[s.speeds_n] = vx
+    s.speeds_t[s.speeds_n] = now
+    s.speeds_n += 1
+
+
+@kernel
+def store_speed_first(p, s, vx, now):
+    """At the start of a tick remember the measured speed, and forget those older than the delay."""
+    if not p.speeds_by_time:
+        return
+    if s.speeds_n == MAX_HISTORY:
+        s.speeds_n = forget_oldest(s.speeds_v, s.speeds_t, s.speeds_n)
+    _append_speed(s, vx, now)
+    while time_since(p, now, s.speeds_t[0]) > p.delay_compensation_time:
+        s.speeds_n = forget_oldest(s.speeds_v, s.speeds_t, s.speeds_n)
+
+
+@kernel
+def store_speed_last(p, s, vx, now):
+    """At the end of a tick remember the measured speed; the newest ``delay / period`` stay."""
+    if p.speeds_by_time:
+        return
     keep = min(int(p.delay_compensation_time / p.ctrl_period), MAX_HISTORY)
     while s.speeds_n > 0 and s.speeds_n >= keep:
         s.speeds_n = forget_oldest(s.speeds_v, s.speeds_t, s.speeds_n)
     if keep > 0:
-        s.speeds_v[s.speeds_n] = vx
-        s.speeds_t[s.speeds_n] = now
-        s.speeds_n += 1
+        _append_speed(s, vx, now)
 
 
 @kernel
@@ -70,14 +91,14 @@ def predict_from_commands(p, s, v, now):
     s.pred_vel = v
     s.pred_dist = 0.0
     for i in range(s.commands_n):
-        age = now - s.commands_stamp[i]
+        age = time_since(p, now, s.commands_stamp[i])
         if age >= delay:
             continue
         t = age
         if i < s.commands_n - 1:
-            t = s.commands_stamp[i + 1] - s.commands_stamp[i]
+            t = time_since(p, s.commands_stamp[i + 1], s.commands_stamp[i])
         t = min(t, delay)
-        a = np.float64(s.commands_acc[i])
+        a = s.commands_acc[i]
         s.pred_dist += abs(abs(s.pred_vel) * t + 0.5 * a * t * t)
         s.pred_vel += -a * t if s.pred_vel < 0.0 else a * t
         if s.pred_vel != 0.0 and math.copysign(1.0, s.pred_vel) != math.copysign(1.0, v):

@@ -1,5 +1,6 @@
 """The four states of the longitudinal controller: which comes next, and what a change resets."""
 
+from safety_island.control.geometry import time_since
 from safety_island.control.kernel import kernel
 from safety_island.control.pid import pid_reset
 from safety_island.control.smooth_stop import smooth_stop_start
@@ -45,15 +46,18 @@ def next_state(
 
 @kernel
 def has_stopped(p, s, v, now):
-    """Whether the vehicle has not run for a while; never before it ran for the first time.
+    """Whether the vehicle has not run for a while; before it ran for the first time only by rule.
 
     Running backward against the gear, on a slope for example, counts as not running.
     """
+    if p.counts_from_start and not s.moved_before:
+        s.moved_before = True
+        s.last_running_time = now
     against_gear = v < 0.0 if s.gear_forward else v > 0.0
     if not (abs(v) < p.stopped_state_entry_vel or against_gear):
         s.moved_before = True
         s.last_running_time = now
-    elapsed = now - s.last_running_time
+    elapsed = time_since(p, now, s.last_running_time)
     return s.moved_before and elapsed > p.stopped_state_entry_duration_time
 
 
@@ -81,7 +85,11 @@ def enter(p, s, old, v, now):
     elif s.state == DRIVE and old == STOPPING:
         pid_reset(s.pid)
         s.vel_error = 0.0
-        s.prev_acc = max(0.0, s.raw_acc)
+        # the jerk limit starts without the last braking; until 0.45 only the output's limit did
+        if p.drive_resets_raw:
+            s.raw_acc = max(0.0, s.raw_acc)
+        else:
+            s.prev_acc = max(0.0, s.raw_acc)
     elif s.state == DRIVE and old == STOPPED:
         pid_reset(s.pid)
         s.vel_error = 0.0
@@ -97,8 +105,11 @@ def advance_state(p, s, v, nearest_v, now, t):
         s.under_control_since = now
     overshot = s.stop_dist < -p.emergency_state_overshoot_stop_dist and abs(nearest_v) < STANDING
     departing = s.stop_dist > p.drive_state_stop_dist
-    kept = keep_stopped(p, s, v, departing)
     old = s.state
+    if p.stopped_in_manual and old == STOPPED and stopped and not s.under_control:
+        t.slow_start_held = False
+        return
+    kept = keep_stopped(p, s, v, departing)
     s.state = next_state(
         old,
         p.enable_smooth_stop,

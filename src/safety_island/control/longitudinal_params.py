@@ -77,6 +77,13 @@ class LongitudinalParams:
     time_threshold_before_pid_integration: float = parameter(
         "s", "Time under control before it is integrated at low speed.", 0.0, 60.0
     )
+    ff_scale_min: float = parameter(
+        "",
+        "Smallest factor on the trajectory's acceleration, by speed over target speed.",
+        0.0,
+        1.0,
+    )
+    ff_scale_max: float = parameter("", "Largest factor on it.", 1.0, 10.0)
     enable_brake_keeping_before_stop: bool = switch("Do not let go of the brake before a stop.")
     brake_keeping_acc: float = parameter(
         "m/s^2", "Weakest braking that is kept before a stop.", -20.0, 0.0
@@ -141,8 +148,14 @@ class LongitudinalParams:
     slope_source: str = parameter(
         "",
         "Where the slope is taken from.",
-        choices=("raw_pitch", "trajectory_pitch", "trajectory_adaptive"),
+        choices=(
+            "raw_pitch",
+            "trajectory_pitch",
+            "trajectory_adaptive",
+            "trajectory_goal_adaptive",
+        ),
     )
     correct_reverse_signs: bool = switch(
-        "Use the right signs of acceleration feedback and slope in reverse; the firmware's are not."
+        "Use the right signs of acceleration feedback and slope in reverse, as Autoware does since"
+        " 0.46 and 0.53."
     )

@@ -30,6 +30,7 @@ STATE_COLUMNS = [
     ("under_control_prev", "?"),
     ("under_control_since", "f8"),  # [s]
     ("kept_recorded", "?"),  # kept_prev is set
+    ("slope_started", "?"),  # slope_prev is set
     ("kept_prev", "?"),  # standing with unconverged steering at the last record
 ]
 
@@ -40,11 +41,12 @@ COMMAND_COLUMNS = [
     ("vel_error", "f8"),  # low-passed speed error [m/s]
     ("acc_error", "f8"),  # low-passed acceleration error [m/s^2]
     ("pitch", "f8"),  # low-passed pitch of the body, positive uphill [rad]
+    ("slope_prev", "f8"),  # slope of the previous tick before the pitch limits [rad]
     ("pid", PID_MEMORY),
     ("weak_time", "f8"),  # when smooth stop last braked weakly while running [s]
     ("strong_acc", "f8"),  # strong braking of this smooth stop [m/s^2]
     ("commands_n", "i8"),  # accelerations of the last DRIVE ticks, oldest first
-    ("commands_acc", "f4", (MAX_HISTORY,)),  # [m/s^2]
+    ("commands_acc", "f8", (MAX_HISTORY,)),  # [m/s^2]
     ("commands_stamp", "f8", (MAX_HISTORY,)),  # [s]
     ("speeds_n", "i8"),  # measured speeds of the last ticks, oldest first
     ("speeds_v", "f8", (MAX_HISTORY,)),  # signed [m/s]
@@ -56,12 +58,14 @@ TICK_COLUMNS = [
     ("n", "i8"),  # points of the working list
     ("nearest", "i8"),  # index of the ego's point in it
     ("target", "i8"),  # index of the target point
+    ("times", "f8", (LIST_CAPACITY,)),  # of the points of the list (temporal mode) [s]
     ("ego_point", POINT),  # the trajectory where the ego is
     ("target_point", POINT),  # the trajectory where the ego will be after the delay
     ("stop_dist", "f8"),  # [m]
     ("pred_vel", "f8"),  # after the delay [m/s]
     ("pred_dist", "f8"),  # run until then [m]
     ("slope", "f8"),  # [rad], positive uphill
+    ("slope_from_trajectory", "?"),
     ("under_control", "?"),
 ]
 

@@ -23,6 +23,11 @@ from safety_island.control.reference_shape import (
     segment_on_reference,
     yaw_at,
 )
+from safety_island.control.reference_temporal import (
+    fill_timed_window,
+    locate_timed,
+    reference_time,
+)
 from safety_island.control.status import MpcStatus, VehicleModel
 from safety_island.control.steering_predictor import predict_steering, store_command
 from safety_island.control.steering_rate_limit import fill_bounds
@@ -70,16 +75,38 @@ def locate(params, inputs, lat, trace):
         y = lat.ry[a] + ratio * dy
         first = yaw_at(lat, a)
         path_yaw = normalize_angle(first + ratio * normalize_angle(yaw_at(lat, a + 1) - first))
+    return _set_errors(params, inputs, lat, trace, x, y, yaw, path_yaw), ratio
+
+
+@kernel
+def _locate_by_time(params, inputs, lat, trace, time):
+    """Set the errors against where the vehicle should be at ``time`` [s]; returns the status."""
+    yaw = yaw_of(inputs.qx, inputs.qy, inputs.qz, inputs.qw)
+    i, part = locate_timed(lat, time)
+    a = max(i - 1, 0)
+    x = between(lat.rx[a], lat.rx[i], part)
+    y = between(lat.ry[a], lat.ry[i], part)
+    path_yaw = normalize_angle(lat.ryaw[a] + part * normalize_angle(lat.ryaw[i] - lat.ryaw[a]))
+    status = _set_errors(params, inputs, lat, trace, x, y, yaw, path_yaw)
+    trace.nearest_idx = i
+    return status
+
+
+@kernel
+def _set_errors(params, inputs, lat, trace, x, y, yaw, path_yaw):
+    """Set the errors against the reference point (x, y) [m]; a status when they are too large."""
     ex = inputs.x - x
     ey = inputs.y - y
     trace.nearest_idx = lat.nearest
     trace.lateral_error = -math.sin(path_yaw) * ex + math.cos(path_yaw) * ey
     trace.yaw_error = normalize_angle(yaw - path_yaw)
+    if not params.enable_deviation_checks:
+        return _SOLVED
     if math.sqrt(ex * ex + ey * ey) > params.admissible_position_error:
-        return _TOO_FAR, ratio
+        return _TOO_FAR
     if abs(trace.yaw_error) > params.admissible_yaw_error_rad:
-        return _YAW_ERROR, ratio
-    return _SOLVED, ratio
+        return _YAW_ERROR
+    return _SOLVED
 
 
 @kernel
@@ -137,14 +164,21 @@ def prepare_mpc(params, inputs, lat, qp, trace, now):
     if lat.ref_n == 0:
         return _NO_REFERENCE
     status, ratio = locate(params, inputs, lat, trace)
+    time = 0.0
+    if lat.is_timed:  # the place in the segment still decides from where on speeds are filtered
+        time = reference_time(lat, inputs, now)
+        status = _locate_by_time(params, inputs, lat, trace, time)
     if status != _SOLVED:
         return status
     _fill_initial_state(params, lat, trace)
     horizon = params.mpc_prediction_horizon
     delay = lat.delay_n * params.ctrl_period
-    fill_window(params, lat, inputs.vx, ratio, delay, horizon)
-    reach = max(params.curvature_smoothing_num_traj, params.curvature_smoothing_num_ref_steer)
-    ensure(lat, max(lat.segment + lat.window, reach) + reach)
+    if lat.is_timed:
+        fill_timed_window(params, lat, inputs.vx, time)
+    else:
+        fill_window(params, lat, inputs.vx, ratio, delay, horizon)
+        reach = max(params.curvature_smoothing_num_traj, params.curvature_smoothing_num_ref_steer)
+        ensure(lat, max(lat.segment + lat.window, reach) + reach)
     trace.nearest_time = lat.nearest_time
     trace.prediction_dt = lat.prediction_dt
     _compensate_delay(params, lat)

@@ -53,6 +53,15 @@ def insert_point(points, n, at, point):
 
 
 @kernel
+def insert_plainly(points, n, at, point):
+    """Insert ``point`` before index ``at``, also on top of another; return how many there are."""
+    for i in range(n, at, -1):
+        points[i] = points[i - 1]
+    points[at] = point
+    return n + 1
+
+
+@kernel
 def between(a, b, ratio):
     """Linear interpolation in double precision, also of ``float32`` values."""
     start = np.float64(a)
@@ -94,6 +103,12 @@ def interpolate_at(points, segment, x, y, out):
     ratio = 0.0
     if length > 0.0:
         ratio = min(max(offset_along(points, segment, x, y) / length, 0.0), 1.0)
+    interpolate_point(a, b, ratio, out)
+
+
+@kernel
+def interpolate_point(a, b, ratio, out):
+    """The trajectory between two points; speeds and accelerations as ``float32``."""
     interpolate_pose(a, b, ratio, out)
     out.v = np.float32(between(a.v, b.v, ratio))
     out.v_lat = np.float32(between(a.v_lat, b.v_lat, ratio))

@@ -7,6 +7,14 @@ from safety_island.control.kernel import kernel
 
 
 @kernel
+def time_of(points, i, start):
+    """time_from_start [s] of point ``i``: each record holds that of the next point."""
+    if i == 0:
+        return start
+    return points[i - 1].sec + points[i - 1].nanosec * 1e-9
+
+
+@kernel
 def _global_nearest(points, n, x, y):
     """Nearest point and its squared distance; of equals the first."""
     best = 0
@@ -43,6 +51,12 @@ def _nearest_within(points, n, x, y, yaw, limit_squared, yaw_limit):
         elif best >= 0:
             break
     return best
+
+
+@kernel
+def nearest_position(points, n, x, y):
+    """Nearest point to a position, without limits; of equals the first."""
+    return _global_nearest(points, n, x, y)[0]
 
 
 @kernel

@@ -6,7 +6,7 @@ of shape (1,) and indexes it inside.
 
 from __future__ import annotations
 
-from dataclasses import fields
+from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
@@ -20,7 +20,8 @@ from safety_island.control.params import (
     Parameters,
     VehicleParams,
 )
-from safety_island.control.status import SlopeSource, Solver, VehicleModel
+from safety_island.control.release import Rules, rules_of
+from safety_island.control.status import ReferenceMode, SlopeSource, Solver, VehicleModel
 
 Records = npt.NDArray[Any]
 """A one-dimensional array of records."""
@@ -48,11 +49,12 @@ def cells(records: Records) -> dict[str, memoryview[Any]]:
 
 _CHOICES: dict[str, Any] = {
     "slope_source": SlopeSource,
+    "trajectory_reference_mode": ReferenceMode,
     "qp_solver_type": Solver,
     "vehicle_model_type": VehicleModel,
 }
 _SCALARS = {"float": "f8", "int": "i8", "bool": "?"}
-_GROUPS = (VehicleParams, NodeParams, LateralParams, LongitudinalParams)
+_GROUPS = (VehicleParams, NodeParams, LateralParams, LongitudinalParams, Rules)
 
 
 def _parameter_columns() -> list[Any]:
@@ -70,7 +72,7 @@ def _parameter_columns() -> list[Any]:
 
 
 PARAMS = record(_parameter_columns())
-"""Every parameter by its name; a choice is its number, a table has a ``_size`` beside it."""
+"""Every parameter and every rule by its name; a choice is its number, a table has a ``_size``."""
 
 
 def pack_parameters(parameters: Parameters) -> Records:
@@ -79,7 +81,8 @@ def pack_parameters(parameters: Parameters) -> Records:
     Raises ValueError when a table is longer than MAX_RATE_TABLE.
     """
     packed = np.zeros(1, PARAMS)
-    for group in (parameters.vehicle, parameters.node, parameters.lateral, parameters.longitudinal):
+    groups = (parameters.vehicle, parameters.node, parameters.lateral, parameters.longitudinal)
+    for group in (*groups, _rules(parameters)):
         for item in fields(group):
             value = getattr(group, item.name)
             if isinstance(value, tuple):
@@ -90,6 +93,14 @@ def pack_parameters(parameters: Parameters) -> Records:
             elif not isinstance(value, str):
                 packed[0][item.name] = value
     return packed
+
+
+def _rules(parameters: Parameters) -> Rules:
+    """Return the rules in force: those of the release, and the signs that ours corrects."""
+    rules = rules_of(parameters.node.autoware_release)
+    if not parameters.longitudinal.correct_reverse_signs:
+        return rules
+    return replace(rules, feedback_turns_in_reverse=True, slope_turns_in_reverse=True)
 
 
 POINT = record(
@@ -134,12 +145,14 @@ INPUTS = record(
         ("vy", "f8"),  # speed along body y [m/s]
         ("wz", "f8"),  # yaw rate [rad/s]
         ("ax", "f8"),  # acceleration along body x [m/s^2]
+        ("steering_offset", "f8"),  # of the steering sensor, as a topic tells it [rad]
         ("steer", "f4"),  # measured tyre angle [rad]
         ("mode", "i4"),  # operation mode, see Mode
         ("enabled", "?"),  # is_autoware_control_enabled
         ("n_points", "i8"),  # points of the trajectory in force
         ("trajectory_id", "i8"),  # counts received trajectories; 0: none yet
         ("trajectory_stamp", "f8"),  # its header stamp [s]
+        ("trajectory_start", "f8"),  # time_from_start of its first point [s]
     ]
 )
 """Everything that one tick reads, besides the points of the trajectory."""

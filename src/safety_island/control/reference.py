@@ -10,6 +10,7 @@ from safety_island.control.kernel import kernel
 from safety_island.control.limits import MAX_REFERENCE
 from safety_island.control.points import advance, nearest_index, offset_along, segment_of
 from safety_island.control.reference_positions import close, ensure, extend, work_out
+from safety_island.control.reference_shape import starts_close
 from safety_island.control.reference_smoothing import smooth_reference
 from safety_island.control.spline import (
     fit_space_curve,
@@ -118,9 +119,9 @@ def _set_direction(params, points, lat, count):
     """
     if count >= 2:
         lat.is_forward = lat.source_is_forward
-    if count < 3:
+    if count < 3 or (params.one_sided_ends and starts_close(lat)):
         _fit_yaw(points, lat.source_n, lat, 2.0 * params.traj_resample_dist)
-        for i in range(count):
+        for i in range(min(count, 2)):
             j = interval_from(lat.arc, lat.source_n, 0, lat.rs[i])
             lat.short_yaw[i] = spline_value(lat.arc, lat.pyaw, lat.myaw, j, lat.rs[i])
 
@@ -146,6 +147,7 @@ def update_reference(params, points, inputs, lat):
         return
     lat.ref_n = count
     lat.ready = lat.cursor = 0
+    lat.one_sided_ends = params.one_sided_ends
     smooths = params.enable_path_smoothing and count > 2 * params.path_filter_moving_ave_num
     if not smooths and not params.extend_trajectory_for_end_yaw_control:
         ensure(lat, 1)
@@ -156,5 +158,5 @@ def update_reference(params, points, inputs, lat):
     if smooths:
         smooth_reference(lat, count, params.path_filter_moving_ave_num)
     if params.extend_trajectory_for_end_yaw_control:
-        count = extend(lat, count, params.traj_resample_dist)
+        count = extend(params, lat, count)
     close(lat, count)

@@ -66,8 +66,13 @@ def work_out(lat, end):
 
 
 @kernel
-def extend(lat, count, step):
-    """Append 10 m of points along the received trajectory's last yaw, at 10 m/s."""
+def extend(params, lat, count):
+    """Append 10 m of points along the received trajectory's last yaw.
+
+    They have the speed of the last point, or by the older rule 10 m/s, also in reverse.
+    """
+    step = params.traj_resample_dist
+    speed = lat.rv[count - 1] if params.extends_with_end_speed else 10.0
     sign = 1.0 if lat.is_forward else -1.0
     dx = sign * step * math.cos(lat.source_yaw_end)
     dy = sign * step * math.sin(lat.source_yaw_end)
@@ -77,7 +82,7 @@ def extend(lat, count, step):
         lat.rx[count] = lat.rx[count - 1] + dx
         lat.ry[count] = lat.ry[count - 1] + dy
         lat.rz[count] = lat.rz[count - 1]
-        lat.rv[count] = 10.0
+        lat.rv[count] = speed
         count += 1
     return count
 

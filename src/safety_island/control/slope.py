@@ -5,14 +5,18 @@ import math
 from safety_island.control.geometry import clip
 from safety_island.control.kernel import kernel
 from safety_island.control.pid import low_pass
+from safety_island.control.points import nearest_position, offset_along, segment_of
 from safety_island.control.status import SlopeSource
-from safety_island.control.trajectory_walk import pitch_ahead
+from safety_island.control.trajectory_walk import arc_length, pitch_ahead
 
-RAW_PITCH = int(SlopeSource.RAW_PITCH)
 TRAJECTORY_PITCH = int(SlopeSource.TRAJECTORY_PITCH)
+TRAJECTORY_ADAPTIVE = int(SlopeSource.TRAJECTORY_ADAPTIVE)
+TRAJECTORY_GOAL_ADAPTIVE = int(SlopeSource.TRAJECTORY_GOAL_ADAPTIVE)
 
 GRAVITY = 9.81
 """Standard gravity as the firmware rounds it [m/s^2]."""
+RATE_GRAVITY = 9.8
+"""The same as Autoware rounds it where a jerk becomes the rate of a slope [m/s^2]."""
 
 
 @kernel
@@ -22,34 +26,65 @@ def body_pitch(qx, qy, qz, qw):
 
 
 @kernel
-def from_trajectory(p, vx):
+def goal_distance(u, s, points):
+    """Length [m] along the list from the ego's projection to its end; the ego's yaw does not count.
+
+    Autoware: calcSignedArcLength(points, position, last).
+    """
+    nearest = nearest_position(points, s.n, u.x, u.y)
+    segment = segment_of(points, s.n, nearest, u.x, u.y)
+    return arc_length(points, segment, s.n - 1) - offset_along(points, segment, u.x, u.y)
+
+
+@kernel
+def from_trajectory(p, u, s, points):
     """Whether the slope of this tick comes from the trajectory, not from the body."""
-    if p.slope_source == RAW_PITCH:
-        return False
-    return p.slope_source == TRAJECTORY_PITCH or vx > p.adaptive_trajectory_velocity_th
+    source = p.slope_source
+    if source == TRAJECTORY_ADAPTIVE:
+        threshold = p.adaptive_trajectory_velocity_th
+        return u.vx >= threshold if p.slope_rate_limited else u.vx > threshold
+    if source == TRAJECTORY_GOAL_ADAPTIVE:
+        return goal_distance(u, s, points) >= p.wheel_base
+    return source == TRAJECTORY_PITCH
 
 
 @kernel
 def update_slope(p, u, s, points):
-    """Advance the pitch filter and set the slope of this tick [rad]."""
-    if p.slope_source != TRAJECTORY_PITCH:
-        s.pitch = low_pass(s.pitch, p.lpf_pitch_gain, body_pitch(u.qx, u.qy, u.qz, u.qw))
+    """Advance the pitch filter and set the slope of this tick [rad].
+
+    The adaptive sources change over between two pitches, so by rule their slope is limited to the
+    rate at which the acceleration may change. Autoware: PidLongitudinalController::getControlData.
+    """
+    s.pitch = low_pass(s.pitch, p.lpf_pitch_gain, body_pitch(u.qx, u.qy, u.qz, u.qw))
     s.slope = s.pitch
-    if from_trajectory(p, u.vx):
+    s.slope_from_trajectory = from_trajectory(p, u, s, points)
+    if s.slope_from_trajectory:
         s.slope = pitch_ahead(points, s.n, s.target, p.wheel_base)
+        if p.slope_turns_in_reverse and not s.gear_forward:
+            s.slope = -s.slope
+    adapts = p.slope_source == TRAJECTORY_ADAPTIVE or p.slope_source == TRAJECTORY_GOAL_ADAPTIVE
+    if adapts and p.slope_rate_limited and s.slope_started:
+        low = p.min_jerk / RATE_GRAVITY
+        high = p.max_jerk / RATE_GRAVITY
+        s.slope = s.slope_prev + clip(s.slope - s.slope_prev, low * s.dt, high * s.dt)
+    s.slope_prev = s.slope
+    s.slope_started = True
 
 
 @kernel
-def slope_acceleration(p, u, s):
+def slope_pull(p, s):
+    """Acceleration [m/s^2] by which the slope pulls along body x, within the pitch limits."""
+    return GRAVITY * math.sin(clip(s.slope, p.min_pitch_rad, p.max_pitch_rad))
+
+
+@kernel
+def slope_acceleration(p, s):
     """Acceleration [m/s^2] in the gear's direction that holds the vehicle against the slope.
 
-    The body's pitch is positive when body x points uphill, so it counts against the reverse gear.
-    The trajectory's is positive uphill in the direction of travel; the firmware turns that sign in
-    reverse all the same, ``correct_reverse_signs`` does not.
+    The slope counts as positive when body x points uphill, so it counts against the reverse gear.
+    Until 0.52 the trajectory's pitch was positive uphill in the direction of travel, and its sign
+    was turned in reverse all the same.
     """
     if not p.enable_slope_compensation:
         return 0.0
-    pull = GRAVITY * math.sin(clip(s.slope, p.min_pitch_rad, p.max_pitch_rad))
-    if s.gear_forward or (p.correct_reverse_signs and from_trajectory(p, u.vx)):
-        return pull
-    return -pull
+    return slope_pull(p, s) if s.gear_forward else -slope_pull(p, s)

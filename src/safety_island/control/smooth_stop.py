@@ -1,6 +1,6 @@
 """Smooth stop: how to brake over the last half metre without a jerk."""
 
-from safety_island.control.geometry import clip
+from safety_island.control.geometry import clip, time_since
 from safety_island.control.kernel import kernel
 from safety_island.control.status import SmoothStopMode
 
@@ -68,7 +68,7 @@ def smooth_stop_mode(p, s, v, ax, now):
             return STRONG
         s.weak_time = now
         return WEAK
-    return WEAK if now - s.weak_time < WEAK_HOLD else STRONG_STOP
+    return WEAK if time_since(p, now, s.weak_time) < WEAK_HOLD else STRONG_STOP
 
 
 @kernel

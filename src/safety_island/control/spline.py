@@ -21,6 +21,16 @@ def second_derivatives(arc, gain, values, second, n):
 
 
 @kernel
+def elimination_factors(arc, gain, n):
+    """Fill the factors of the elimination that ``second_derivatives`` needs."""
+    gain[0] = 0.0
+    for i in range(1, n - 1):
+        before = arc[i] - arc[i - 1]
+        after = arc[i + 1] - arc[i]
+        gain[i] = after / (2.0 * (before + after) - before * gain[i - 1])
+
+
+@kernel
 def fit_space_curve(arc, gain, x, y, z, mx, my, mz, n):
     """Fill arc length, elimination factors and second derivatives of a curve through n points.
 

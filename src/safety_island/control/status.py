@@ -45,6 +45,14 @@ class SlopeSource(IntEnum):
     RAW_PITCH = 0
     TRAJECTORY_PITCH = 1
     TRAJECTORY_ADAPTIVE = 2
+    TRAJECTORY_GOAL_ADAPTIVE = 3
+
+
+class ReferenceMode(IntEnum):
+    """How the reference point of a tick is chosen."""
+
+    SPATIAL = 0
+    TEMPORAL = 1
 
 
 class VehicleModel(IntEnum):
@@ -75,7 +83,8 @@ class Refusal(IntEnum):
     TOO_LONG = 6
     OUT_OF_RANGE = 7
     MIXED_DIRECTION = 8
-    NEEDS_CLEANING = 9
+    BAD_TIMES = 9
+    NEEDS_CLEANING = 10
     """Of a check alone: cleaning decides."""
 
 

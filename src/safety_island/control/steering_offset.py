@@ -1,10 +1,33 @@
-"""Estimation of a constant offset of the steering sensor (optional)."""
+"""A constant offset of the steering sensor (optional): estimated, or taken from a topic."""
 
 import math
 
+from safety_island.control.filters import butterworth
 from safety_island.control.geometry import clip
 from safety_island.control.kernel import kernel
 from safety_island.control.limits import MAX_OFFSET_SAMPLES
+
+_ARRIVED = 1e-4
+"""Distance [rad] from its target at which the filtered offset counts as there."""
+
+
+@kernel
+def follow_offset(params, lat, offset):
+    """Follow an offset [rad] that a topic tells, in limited and filtered steps.
+
+    ``lat.offset`` is added to the measured angle and taken from the command, so that the MPC works
+    in true angles. Autoware since 0.51: SteeringOffsetEstimator's successor in the lateral
+    controller.
+    """
+    if not params.steering_offset_enable_auto_steering_offset_removal:
+        lat.offset_target = 0.0
+        lat.offset = 0.0
+        return
+    step = params.steering_offset_max_update_th
+    if abs(lat.offset_target - lat.offset) <= _ARRIVED:
+        lat.offset_target += clip(offset - lat.offset_target, -step, step)
+    cutoff = params.steering_offset_steer_offset_filter_cutoff_hz
+    lat.offset = butterworth(lat.offset_filter, lat.offset_target, cutoff, params.ctrl_period)
 
 
 @kernel

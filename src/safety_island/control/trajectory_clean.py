@@ -17,10 +17,10 @@ import math
 from safety_island.control.geometry import normalize_angle, yaw_of
 from safety_island.control.input_check import (
     FEWEST_POINTS,
-    MAX_BACKTRACK,
     NEAR,
     STANDSTILL,
     has_room,
+    leads_both_ways,
     leans,
 )
 from safety_island.control.kernel import entry, kernel
@@ -181,23 +181,6 @@ def _add_middle(points):
 
 
 @kernel
-def _leads_both_ways(points, n):
-    """Whether the points lead to and fro, in steps beyond noise."""
-    forward = 0.0
-    backward = 0.0
-    last = 0
-    for i in range(1, n):
-        dx = points[i].x - points[last].x
-        dy = points[i].y - points[last].y
-        if dx * dx + dy * dy >= NEAR * NEAR:
-            way, _ = advance(points[last], dx, dy)
-            forward += max(way, 0.0)
-            backward += max(-way, 0.0)
-            last = i
-    return min(forward, backward) > MAX_BACKTRACK
-
-
-@kernel
 def _extent(points, n):
     """Greatest distance [m] of a point from the first."""
     greatest = 0.0
@@ -269,4 +252,4 @@ def clean_trajectory(params, points, inputs, cleaned, n):
     cleaned[0].n = left
     if not has_room(params, points, left):
         return _TOO_LONG
-    return _MIXED if _leads_both_ways(points, left) else _ACCEPTED
+    return _MIXED if leads_both_ways(points, left) else _ACCEPTED

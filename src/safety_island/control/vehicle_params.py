@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from safety_island.parameter import parameter
+from safety_island.control.release import RELEASES
+from safety_island.parameter import parameter, switch
 
 
 @dataclass(frozen=True)
@@ -21,16 +22,16 @@ class VehicleParams:
         "m", "Left wheel to right wheel; not used by the controllers.", 0.05, 10.0
     )
     front_overhang: float = parameter(
-        "m", "Front axle to front bumper; not used by the controllers.", 0.0, 10.0
+        "m", "Front axle to front bumper; not used by the controllers.", -10.0, 10.0
     )
     rear_overhang: float = parameter(
-        "m", "Rear axle to rear bumper; not used by the controllers.", 0.0, 10.0
+        "m", "Rear axle to rear bumper; not used by the controllers.", -10.0, 10.0
     )
     left_overhang: float = parameter(
-        "m", "Left wheel to left side; not used by the controllers.", 0.0, 5.0
+        "m", "Left wheel to left side; not used by the controllers.", -5.0, 5.0
     )
     right_overhang: float = parameter(
-        "m", "Right wheel to right side; not used by the controllers.", 0.0, 5.0
+        "m", "Right wheel to right side; not used by the controllers.", -5.0, 5.0
     )
     vehicle_height: float = parameter(
         "m", "Ground to roof; not used by the controllers.", 0.05, 10.0
@@ -47,6 +48,29 @@ class NodeParams:
     ctrl_period: float = parameter("s", "Time from one tick to the next.", 0.005, 1.0)
     timeout_thr_sec: float = parameter(
         "s", "Age at which a command of either controller is no longer published.", 0.01, 10.0
+    )
+    cyclic_message_timeout_thr_sec: float = parameter(
+        "s",
+        "Age of the trajectory beyond which the diagnostic cyclic_message_timeout is an error"
+        " (since 0.51); it ends no output.",
+        0.01,
+        60.0,
+    )
+    autoware_release: str = parameter(
+        "",
+        "Release of Autoware whose rules the controllers follow; unless it is given, the keys of"
+        " Autoware's files decide it.",
+        choices=RELEASES,
+    )
+    enable_deviation_checks: bool = switch(
+        "Give up following beyond admissible_* and emergency_state_traj_*; Autoware leaves that to"
+        " its control_validator since 0.41."
+    )
+    trajectory_reference_mode: str = parameter(
+        "",
+        "Where the vehicle should be now: at the nearest place of the trajectory (spatial), or"
+        " where the clock says (temporal, Autoware 0.53).",
+        choices=("spatial", "temporal"),
     )
     lateral_controller_mode: str = parameter("", "Lateral controller.", choices=("mpc",))
     longitudinal_controller_mode: str = parameter("", "Longitudinal controller.", choices=("pid",))

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
+from safety_island.control.release import RELEASES
 from safety_island.dds.qos import DEFAULT, INPUT_DEPTH, LATCHED, Qos
 
 MAIN_COMPUTE_DOMAIN = 1
@@ -36,6 +38,17 @@ class TopicEntry:
     age_limit: str = ""
     bridged: tuple[int, int] | None = None
 
+    newer: tuple[tuple[str, str, str], ...] = ()
+    """Release from which on the topic has another name and type, with both; oldest first."""
+
+    def of_release(self, release: str) -> TopicEntry:
+        """Return the entry as a release of Autoware has it."""
+        entry = self
+        for since, name, type_name in self.newer:
+            if RELEASES.index(release) >= RELEASES.index(since):
+                entry = replace(entry, name=name, type_name=type_name)
+        return entry
+
     @property
     def subscription_qos(self) -> Qos:
         """What the island subscribes with: as published, with room to count what it drops."""
@@ -66,6 +79,7 @@ TRAJECTORY = TopicEntry(
     7.4,
     "gate.age_limit.trajectory",
     _INWARD,
+    (("0.47", "/planning/trajectory", "autoware_planning_msgs/msg/Trajectory"),),
 )
 ODOMETRY = TopicEntry(
     "odometry",
@@ -112,6 +126,13 @@ LATERAL_TIME = TopicEntry(
     Direction.OUT,
     DEFAULT,
     EVERY_TICK,
+    newer=(
+        (
+            "0.41",
+            "/control/trajectory_follower/lateral/debug/processing_time_ms",
+            "autoware_internal_debug_msgs/msg/Float64Stamped",
+        ),
+    ),
 )
 LONGITUDINAL_TIME = TopicEntry(
     "longitudinal_processing_time",
@@ -120,6 +141,13 @@ LONGITUDINAL_TIME = TopicEntry(
     Direction.OUT,
     DEFAULT,
     EVERY_TICK,
+    newer=(
+        (
+            "0.41",
+            "/control/trajectory_follower/longitudinal/debug/processing_time_ms",
+            "autoware_internal_debug_msgs/msg/Float64Stamped",
+        ),
+    ),
 )
 STATUS = TopicEntry(
     "status",
@@ -129,6 +157,16 @@ STATUS = TopicEntry(
     DEFAULT,
     EVERY_TICK,
 )
+STEERING_OFFSET = TopicEntry(
+    "steering_offset",
+    "/vehicle/calibration/steer_offset_estimator/steering_offset_update",
+    "autoware_internal_debug_msgs/msg/Float32Stamped",
+    Direction.IN,
+    LATCHED,
+    None,
+    bridged=_INWARD,
+)
+"""Optional, and only since 0.51: the offset of the steering sensor [rad]."""
 ARM = TopicEntry(
     "arm",
     "/safety_island/arm",
@@ -154,6 +192,11 @@ OUTPUTS = tuple(entry for entry in TOPICS if entry.direction is Direction.OUT)
 BRIDGED = tuple(entry for entry in TOPICS if entry.bridged is not None)
 OWN = (STATUS, ARM)
 """The island's own, beyond the contract, on its own domain."""
+
+
+def of_release(entries: Iterable[TopicEntry], release: str) -> tuple[TopicEntry, ...]:
+    """Return entries as a release of Autoware has them."""
+    return tuple(entry.of_release(release) for entry in entries)
 
 
 def topic(key: str) -> TopicEntry:

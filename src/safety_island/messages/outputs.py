@@ -11,9 +11,11 @@ from safety_island.messages.wire import HEADER_LE, Time
 
 CONTROL = "autoware_control_msgs/msg/Control"
 FLOAT64_STAMPED = "tier4_debug_msgs/msg/Float64Stamped"
+FLOAT32_STAMPED = "autoware_internal_debug_msgs/msg/Float32Stamped"
 
 _CONTROL = Struct("<4s iIiI iIiI ff B3x iIiI fff BB")
 _FLOAT64 = Struct("<4siId")
+_FLOAT32 = Struct("<4siIf")
 
 
 class Control(NamedTuple):
@@ -93,6 +95,18 @@ def decode_control(data: bytes) -> Control:
 def encode_float64_stamped(stamp: tuple[int, int], value: float) -> bytes:
     """Return a tier4_debug_msgs/msg/Float64Stamped; ``stamp`` in seconds and nanoseconds."""
     return _FLOAT64.pack(HEADER_LE, *stamp, value)
+
+
+def encode_float32_stamped(stamp: tuple[int, int], value: float) -> bytes:
+    """Return a Float32Stamped of autoware_internal_debug_msgs."""
+    return _FLOAT32.pack(HEADER_LE, *stamp, value)
+
+
+def decode_float32_stamped(data: bytes) -> tuple[Time, float]:
+    """Return stamp and number of a Float32Stamped; DecodeError when it is none."""
+    data = of_size(data, _FLOAT32.size, FLOAT32_STAMPED)
+    _, sec, nanosec, value = _FLOAT32.unpack_from(data)
+    return Time(sec, nanosec), value
 
 
 def decode_float64_stamped(data: bytes) -> tuple[Time, float]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from safety_island.can.mode import OutputMode
+from safety_island.control.release import rules_of
 from safety_island.dds import topics
 from safety_island.dds.topics import TopicEntry
 from safety_island.guard import Guard
@@ -24,6 +25,7 @@ from safety_island.node.outputs import ControlTopic, Output, ProcessingTimes, To
 from safety_island.node.report import Outcome, TickReport, describe
 from safety_island.node.sender import CommandSender
 from safety_island.node.status import StatusTopic
+from safety_island.node.steering_offset import SteeringOffset
 from safety_island.node.transport import Transport
 from safety_island.params import IslandParameters
 from safety_island.platform.interfaces import Platform, Tick
@@ -63,7 +65,11 @@ class ControllerNode(Node):
         self.parameters, self.mode = parameters, mode
         self.follower = follower
         self.controllers = Controllers(follower, self.clock, self.logger)
-        self.inputs = InputSet(transport, follower, self.clock, self.logger, parameters.gate)
+        self._release = release = parameters.node.autoware_release
+        self.inputs = InputSet(
+            transport, follower, self.clock, self.logger, parameters.gate, release
+        )
+        self._offset = self._steering_offset()
         self.identity = Identity(transport, self.inputs, self.logger, parameters, joined_at)
         self._period_s = period_s = parameters.node.ctrl_period
         timeout_s = parameters.node.timeout_thr_sec
@@ -78,7 +84,7 @@ class ControllerNode(Node):
         """The last tick."""
         self.observers: list[Callable[[TickReport], None]] = []
         """Told of each tick of ``run`` after its end; they take their time from the same thread."""
-        time_topics = (topics.LATERAL_TIME, topics.LONGITUDINAL_TIME)
+        time_topics = topics.of_release((topics.LATERAL_TIME, topics.LONGITUDINAL_TIME), release)
         self._times = ProcessingTimes(*map(self._writer, time_topics))
         self.status = StatusTopic(self, self.publisher(topics.STATUS))
         self.status.memory_bytes = platform.memory_bytes()
@@ -92,6 +98,13 @@ class ControllerNode(Node):
         topic = ControlTopic(topics.CONTROL, publisher, self.logger)
         self.sender.topics.append(topic)
         return topic
+
+    def _steering_offset(self) -> SteeringOffset | None:
+        """Subscribe to the offset of the steering sensor, where the release has that topic."""
+        enabled = self.parameters.lateral.steering_offset_enable_auto_steering_offset_removal
+        if not enabled or not rules_of(self._release).steering_offset_is_input:
+            return None
+        return SteeringOffset(self.subscription(topics.STEERING_OFFSET), self.follower, self.logger)
 
     def _writer(self, topic: TopicEntry) -> TopicWriter:
         return TopicWriter(topic, self.publisher(topic), self.logger)
@@ -171,6 +184,8 @@ class ControllerNode(Node):
             self.inputs.drop()
         self.identity.look(now)
         self.sender.listen()
+        if self._offset is not None:
+            self._offset.take()
         since = now - self._period_s if self._last_tick is None else self._last_tick
         return self.inputs.take(now, since)
 

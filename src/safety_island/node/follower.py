@@ -19,8 +19,11 @@ class InputFollower(Protocol):
     def turned_points(self) -> int:
         """Orientations of the trajectory in force that contradicted it, and were replaced."""
 
-    def offer_incoming(self, n: int, stamp: float) -> Refusal:
-        """Offer the first ``n`` points of ``incoming`` and their header stamp [s]."""
+    def offer_incoming(self, n: int, stamp: float, start: float = 0.0) -> Refusal:
+        """Offer the first ``n`` points of ``incoming`` and their header stamp [s].
+
+        ``start`` [s] is the time_from_start of the first point.
+        """
 
     def offer_odometry(
         self,
@@ -60,6 +63,9 @@ class Follower(InputFollower, Protocol):
 
     def allow_control(self, allowed: bool) -> None:
         """Say whether commands are followed; if not, the controllers run as in manual mode."""
+
+    def offer_steering_offset(self, offset: float) -> Refusal:
+        """Offer the offset of the steering sensor [rad]; no tick waits for one."""
 
     def is_ready(self) -> bool:
         """Whether both controllers can run."""

@@ -6,6 +6,7 @@ import math
 from operator import gt
 from typing import NamedTuple
 
+from safety_island.control.release import RELEASES
 from safety_island.gate.params import GateParams
 from safety_island.gate.sender_clock import SenderClock
 from safety_island.gate.writers import WINDOW_S
@@ -14,7 +15,7 @@ from safety_island.messages.inputs import Odometry, OperationMode, Steering
 from safety_island.node.follower import InputFollower
 from safety_island.node.input_kinds import make_input
 from safety_island.node.input_warnings import InputWarnings
-from safety_island.node.inputs import INPUTS, gives_autonomy
+from safety_island.node.inputs import gives_autonomy, inputs_of
 from safety_island.node.transport import Transport
 from safety_island.platform.interfaces import Clock, Logger
 
@@ -50,7 +51,10 @@ class InputSet:
         clock: Clock,
         logger: Logger,
         params: GateParams,
+        release: str = RELEASES[0],
     ) -> None:
+        """``release``: the release of Autoware whose topics are subscribed to."""
+        self._specs = inputs_of(release)
         sender = SenderClock()
         self.items = tuple(
             make_input(
@@ -63,7 +67,7 @@ class InputSet:
                 params,
                 sender,
             )
-            for spec in INPUTS
+            for spec in self._specs
         )
         self._mode = self.items[OPERATION_MODE]
         self._transport = transport
@@ -85,7 +89,7 @@ class InputSet:
 
     def discover(self, now: float) -> None:
         """Look which publishers live; to be called when some came or went."""
-        for item, spec in zip(self.items, INPUTS, strict=True):
+        for item, spec in zip(self.items, self._specs, strict=True):
             others = item.writers.others
             item.discover(self._transport.writers(item.topic, spec.topic.type_name), now)
             if item.writers.others > others:

@@ -49,8 +49,8 @@ def _into_the_follower(follower: InputFollower) -> Callable[[bytes], Trajectory]
     return lambda data: decode_trajectory(data, follower.incoming)
 
 
-def _trajectory_values(message: Trajectory) -> tuple[int, float]:
-    return len(message.points), message.stamp.seconds
+def _trajectory_values(message: Trajectory) -> tuple[int, float, float]:
+    return len(message.points), message.stamp.seconds, message.first_time.seconds
 
 
 def _fields(kind: Any, *names: str) -> Callable[[Any], tuple[Any, ...]]:
@@ -122,3 +122,8 @@ INPUTS = (
     ),
 )
 """The five inputs, in the order in which a tick takes them."""
+
+
+def inputs_of(release: str) -> tuple[InputSpec, ...]:
+    """Return INPUTS with the topics of a release of Autoware."""
+    return tuple(spec._replace(topic=spec.topic.of_release(release)) for spec in INPUTS)

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from difflib import SequenceMatcher, get_close_matches
+from difflib import SequenceMatcher
 from typing import Any
 
 from safety_island.control.limits import MAX_RATE_TABLE
 from safety_island.params.scalars import found
 from safety_island.params.schema import KNOWN, Known
+
+_LIKELY = 0.8
+"""Likeness of a long key and its misspelt form; less is a likeness of letters, not of meaning."""
 
 
 class NotAllowedError(ValueError):
@@ -27,6 +30,8 @@ def convert(known: Known, value: Any) -> Any:
     elif known.kind == "bool":
         if isinstance(value, bool):
             return value
+    elif isinstance(value, float) and f"{value:.2f}" in known.choices:
+        return f"{value:.2f}"  # a release without quotes is a number to YAML
     elif isinstance(value, str) and (value in known.choices or not known.choices):
         return value
     raise _not_allowed(known, value)
@@ -46,6 +51,14 @@ def _not_allowed(known: Known, value: Any) -> NotAllowedError:
 
 def nearest(key: str, keys: tuple[str, ...] = tuple(KNOWN)) -> str:
     """Return the key or keys most like a misspelt one, joined by 'or'; empty when none is."""
-    close = get_close_matches(key, keys, n=3, cutoff=0.5)
-    likeness = {name: SequenceMatcher(None, name, key).ratio() for name in close}
-    return " or ".join(name for name in close if likeness[name] == max(likeness.values()))
+    leaves = [name for name in keys if name.rpartition(".")[2] == key]
+    likeness = {name: SequenceMatcher(None, name, key).ratio() for name in keys}
+    likely = [name for name in keys if likeness[name] >= _likely(name, key)]
+    best = max((likeness[name] for name in likely), default=0.0)
+    return " or ".join(leaves or [name for name in likely if likeness[name] == best][:3])
+
+
+def _likely(name: str, key: str) -> float:
+    """Likeness from which on one is the other misspelt: one letter in five, or in a short name."""
+    shortest = min(len(name), len(key))
+    return min(_LIKELY, (shortest - 1) / shortest) if shortest > 1 else 1.0

@@ -13,9 +13,10 @@ from safety_island.params.consistency import Rule, inconsistencies
 from safety_island.params.convert import NotAllowedError, convert, nearest
 from safety_island.params.no_effect import NoEffect, no_effect
 from safety_island.params.problem import Place, Problem
+from safety_island.params.releases import FOREIGN, FORMER, RELEASE, SPANS, Former, decide
 from safety_island.params.scalars import found, shown
 from safety_island.params.schema import KNOWN
-from safety_island.params.sets import file_of_key
+from safety_island.params.sets import file_of_key, sources_of
 from safety_island.params.source import Source, read_source
 from safety_island.params.tree import Entry, parse, value_of_text
 
@@ -41,8 +42,13 @@ class Layers:
     depth: dict[str, int] = field(default_factory=dict)
     refused: set[str] = field(default_factory=set)
     ignored: list[Ignored] = field(default_factory=list)
+    translated: list[str] = field(default_factory=list)
+    """Older keys that were read as today's, a line each."""
     problems: list[Problem] = field(default_factory=list)
     count: int = 0
+
+    given: list[Entry] = field(default_factory=list)
+    """What the user's files and overrides hold, in their order."""
 
     def add_file(self, path: Path) -> None:
         """Lay a file of the user over what is there."""
@@ -50,6 +56,7 @@ class Layers:
         if isinstance(source, Problem):
             self.problems.append(source)
         else:
+            self.given += parse(source).entries
             self.add_source(source)
 
     def add_source(self, source: Source) -> None:
@@ -61,10 +68,12 @@ class Layers:
     def add_mapping(self, overrides: Mapping[str, object], name: str) -> None:
         """Lay values by key over what is there; a text is read as a file would."""
         place = Place(name)
-        self.add_entries(
+        entries = [
             Entry(key, self._plain(key, value, place), place, place)
             for key, value in _flat(overrides)
-        )
+        ]
+        self.given += entries
+        self.add_entries(entries)
 
     def add_entries(self, given: Iterable[Entry]) -> None:
         """Lay entries over what is there; each key may stand once in a layer."""
@@ -102,7 +111,11 @@ class Layers:
             self.problems.append(Problem(entry.place, entry.key, str(error)))
 
     def _add_unknown(self, entry: Entry, reason: NoEffect | None) -> None:
-        if reason is None:
+        if entry.key in FORMER:
+            self._add_former(entry, FORMER[entry.key])
+        elif entry.key in FOREIGN:
+            self.problems.append(Problem(entry.place, entry.key, FOREIGN[entry.key]))
+        elif reason is None:
             near = nearest(entry.key)
             hint = f"; the nearest known key is {near}" if near else "; see docs/parameters.md"
             self.problems.append(Problem(entry.place, entry.key, f"is not a known key{hint}"))
@@ -112,11 +125,48 @@ class Layers:
         else:
             self.ignored.append(Ignored(entry.place, entry.key, reason.reason))
 
+    def _add_former(self, entry: Entry, former: Former) -> None:
+        """Take the value of an older key over to today's, where there is such a value."""
+        if former.today is None:
+            text = f"is of files before {former.since}; write {former.replaced_by}"
+            self.problems.append(Problem(entry.place, entry.key, text))
+            return
+        text = f"is of files before {former.since}, read as {former.replaced_by}"
+        self.translated.append(f"{entry.place}: {entry.key}: {text}")
+        for key, value in former.today(entry.value).items():
+            if not any(given.key == key for given in self.given):
+                self._add(Entry(key, value, entry.place, entry.section))
+
+    def decide_release(self) -> None:
+        """Follow the release that the user's keys stand for, unless they name one."""
+        if any(entry.key == RELEASE for entry in self.given):
+            return
+        decision = decide(self.given)
+        if decision is None:
+            return
+        place = Place(f"by the files: {decision.why}")
+        if decision.entry is not None:
+            place = Place(f"{place.source}, {decision.entry.place}")
+        self.count += 1
+        self._add(Entry(RELEASE, decision.release, place, place))
+
+    def _of_other_releases(self) -> dict[str, Entry]:
+        """Values of our own set for keys that are missing because the release has no such key."""
+        release = self.values.get(RELEASE)
+        if release is None:
+            return {}
+        absent = {key for key, span in SPANS.items() if key in KNOWN and not span.holds(release)}
+        absent -= set(self.origins)
+        entries = (e for s in sources_of("default") for e in parse(s).entries)
+        return {entry.key: entry for entry in entries if entry.key in absent} if absent else {}
+
     def check(self) -> None:
         """Look for missing keys and for values that do not fit together."""
-        for key in KNOWN:
-            if key not in self.origins:
-                self.problems.append(self._missing(key))
+        fillers = self._of_other_releases()
+        missing = [key for key in KNOWN if key not in self.origins and key not in fillers]
+        self.problems += [self._missing(key) for key in missing]
+        for entry in fillers.values():
+            self._add(entry)
         usable = {key: value for key, value in self.values.items() if key not in self.refused}
         for rule, text in inconsistencies(usable):
             key = self._culprit(rule)

@@ -10,6 +10,7 @@ from typing import Any
 from safety_island.params import consistency
 from safety_island.params.layers import Ignored, Layers
 from safety_island.params.problem import ParameterError, Place, Problem
+from safety_island.params.releases import RELEASE
 from safety_island.params.schema import IslandParameters, assemble, values_of
 from safety_island.params.sets import sources_of
 
@@ -19,11 +20,21 @@ DEFAULT = "default"
 
 @dataclass(frozen=True)
 class Loaded:
-    """A complete set, where each of its values comes from, and the keys without effect."""
+    """A complete set, where each of its values comes from, and what a reader should know of it.
+
+    ``ignored`` are the keys without effect, ``translated`` a line for each older key.
+    """
 
     parameters: IslandParameters
     origins: Mapping[str, Place]
     ignored: tuple[Ignored, ...]
+    translated: tuple[str, ...] = ()
+
+    @property
+    def release(self) -> str:
+        """Which release's rules the controllers follow, and why, as one line."""
+        release = self.parameters.node.autoware_release
+        return f"rules of Autoware {release} ({self.origins[RELEASE]})"
 
 
 def read(
@@ -46,11 +57,12 @@ def read(
         layers.add_file(Path(path))
     if overrides:
         layers.add_mapping(overrides, name)
+    layers.decide_release()
     layers.check()
     if layers.problems:
         raise ParameterError(layers.problems)
     origins = {key: entry.place for key, entry in layers.origins.items()}
-    return Loaded(assemble(layers.values), origins, tuple(layers.ignored))
+    return Loaded(assemble(layers.values), origins, tuple(layers.ignored), tuple(layers.translated))
 
 
 def load(
@@ -72,7 +84,7 @@ def check(files: Sequence[Path], base: str | None = DEFAULT) -> tuple[Problem, .
 
 
 def load_set(name: str) -> IslandParameters:
-    """Return a shipped set: firmware, autoware-0.40 or default."""
+    """Return a shipped set, one of SETS."""
     return read((), name).parameters
 
 

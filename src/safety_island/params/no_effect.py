@@ -1,7 +1,7 @@
 """Keys of Autoware's real files that have no effect here, each with the reason.
 
 They are accepted, so that those files load unchanged, and reported (``Loaded.ignored``). A key that
-would have an effect in Autoware 0.40 and not here is not among them.
+would have an effect in a release of Autoware and not here is not among them.
 """
 
 from __future__ import annotations
@@ -9,9 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 _DEBUG = "debug topics are not published; the trace of each tick holds these values"
-_UNREAD = "Autoware 0.40 does not read it either"
+_UNREAD = "no release of Autoware reads it either"
 _LOADS = "follows from the loads of the wheels and the wheelbase"
-_NESTED = "Autoware 0.40 does not read it here either, only below 'vehicle:'"
+_NESTED = "Autoware does not read it here either, only below 'vehicle:'"
 
 
 @dataclass(frozen=True)
@@ -42,12 +42,11 @@ NO_EFFECT: dict[str, NoEffect] = {
     "vehicle.cg_to_rear_m": NoEffect(_LOADS),
     # longitudinal/pid.param.yaml
     "stopped_jerk": NoEffect(_UNREAD),
-    "ff_scale_min": NoEffect("of later Autoware; built in here as in 0.40", only=0.5),
-    "ff_scale_max": NoEffect("of later Autoware; built in here as in 0.40", only=2.0),
     # trajectory_follower_node.param.yaml
     "enable_control_cmd_horizon_pub": NoEffect("the experimental horizon is not published"),
-    "trajectory_reference_mode": NoEffect("of later Autoware; built in here", only="spatial"),
-    "cyclic_message_timeout_thr_sec": NoEffect("a diagnostic of later Autoware"),
+    "use_trajectory_steering_for_feedforward": NoEffect(
+        "an open proposal, in no release", only=False
+    ),
     # what ros2 param dump adds
     "use_sim_time": NoEffect("time is the machine's own", only=False),
     "start_type_description_service": NoEffect("this node has no services"),

@@ -9,6 +9,16 @@ _SAME_EVERYWHERE = ("speed_points", "shortest_step", "longest_step")
 _GUARD = [key_of(item) for item in fields(GuardParams) if item.name not in _SAME_EVERYWHERE]
 
 REASONS = {
+    "autoware_release": (
+        "the firmware's controllers are those of 0.40; with files of a newer release theirs are"
+        " followed"
+    ),
+    "enable_deviation_checks": (
+        "Autoware leaves them to its control_validator since 0.41, which an island does not have"
+    ),
+    "enable_overshoot_emergency": "the firmware's; Autoware has it off since 0.43",
+    "stopping_state_stop_dist": "the firmware's; autoware_launch has 1 cm less",
+    "slope_source": "the firmware's; Autoware has trajectory_goal_adaptive since 0.41",
     "ctrl_period": "the firmware's; Autoware's needs `--period 0.03`",
     "ego_nearest_dist_threshold": (
         "Autoware's; with 0 the search is global and jumps where a path crosses itself"

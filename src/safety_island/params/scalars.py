@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import re
 
+_LONGEST = 80
+"""Characters of a value that an error shows."""
+
 _TRUE = {"true", "True", "TRUE", "yes", "Yes", "YES", "on", "On", "ON"}
 _FALSE = {"false", "False", "FALSE", "no", "No", "NO", "off", "Off", "OFF"}
 _NULL = {"", "~", "null", "Null", "NULL"}
@@ -53,4 +56,9 @@ def found(value: object) -> str:
         return "a map"
     kinds = {bool: "a switch", int: "a whole number", float: "a number"}
     kind = kinds.get(type(value))
-    return shown(value)[:80] + (f" ({kind})" if kind else "")
+    text = shown(value)
+    if len(text) > _LONGEST:
+        text = text[: _LONGEST - 4].rstrip(" ,") + " ..."
+        if isinstance(value, list | tuple):
+            text += f"] ({len(value)} entries)"
+    return text + (f" ({kind})" if kind else "")

@@ -11,7 +11,7 @@ from safety_island.params.convert import nearest
 from safety_island.params.source import Source
 from safety_island.params.tree import parse
 
-SETS = ("firmware", "autoware-0.40", "default")
+SETS = ("firmware", "autoware-0.40", "autoware-0.50", "autoware-0.53", "default")
 """Names of the shipped sets."""
 
 OWN = ("gate.param.yaml", "life_cycle.param.yaml", "guard.param.yaml")

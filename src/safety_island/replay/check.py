@@ -17,6 +17,9 @@ LATEST = 2.0**31
 POINT_COLUMNS = 13
 """Columns of a trajectory point in a recording; in a message those from 7 on are float32."""
 
+TIME_COLUMN = POINT_COLUMNS
+"""A further column that a recording may have: time_from_start [s]."""
+
 _LARGEST_WHOLE = 2.0**53
 
 
@@ -82,6 +85,11 @@ def check_paths(points: Table, offsets: Whole) -> None:
         raise ValueError("path_offsets does not ascend from 0")
     if offsets[-1] > len(points):
         raise ValueError(f"path_offsets ends at {offsets[-1]}, path_points at {len(points)}")
+    if points.shape[1] > TIME_COLUMN:
+        times = points[:, TIME_COLUMN]
+        wrong = times[~(np.abs(times) < LATEST)]
+        if wrong.size:
+            raise ValueError(f"path_points holds the time {wrong[0]:g}, expected seconds")
     if points.shape[1] < POINT_COLUMNS:
         raise ValueError(f"path_points has {points.shape[1]} columns, expected {POINT_COLUMNS}")
 

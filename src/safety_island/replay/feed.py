@@ -10,7 +10,7 @@ from safety_island import params
 from safety_island.control.follower import TrajectoryFollower
 from safety_island.dds import topics
 from safety_island.messages import inputs as codec
-from safety_island.messages.outputs import Control, decode_control
+from safety_island.messages.outputs import Control, decode_control, encode_float32_stamped
 from safety_island.messages.trajectory import encode_trajectory
 from safety_island.messages.wire import Time
 from safety_island.node import ControllerNode
@@ -49,7 +49,9 @@ class Replay:
         self.node = ControllerNode(self.platform, domain, self.follower, parameters)
         self._write = {
             topic.key: domain.publisher(topic.name, topic.type_name, topic.qos).write
-            for topic in topics.INPUTS
+            for topic in topics.of_release(
+                (*topics.INPUTS, topics.STEERING_OFFSET), parameters.node.autoware_release
+            )
         }
         entry = topics.CONTROL
         self._published = domain.subscription(entry.name, entry.type_name, entry.qos)
@@ -91,7 +93,8 @@ def messages(run: Recording, tick: int) -> list[Message]:
     found = []
     if run.has_new_trajectory(tick):
         stamp = Time.from_seconds(float(run.traj_select[tick, 3]))
-        found.append(("trajectory", encode_trajectory(stamp, "map", run.trajectory(tick))))
+        data = encode_trajectory(stamp, "map", run.trajectory(tick), run.first_time(tick))
+        found.append(("trajectory", data))
     row = {name: float(column[tick]) for name, column in run.state.items()}
     stamp = Time.from_seconds(row["t"])
     mask = int(run.deliver_mask[tick])
@@ -105,6 +108,8 @@ def messages(run: Recording, tick: int) -> list[Message]:
     if mask & ACCELERATION:
         acceleration = codec.Acceleration(stamp, "base_link", row["ax"], *(0.0,) * 5)
         found.append(("acceleration", codec.encode_acceleration(acceleration)))
+    if run.steering_offset is not None and np.isfinite(offset := run.steering_offset[tick]):
+        found.append((topics.STEERING_OFFSET.key, encode_float32_stamped(stamp, float(offset))))
     if mask & OPERATION_MODE:
         found.append(_mode(stamp, int(row["mode"]), bool(row["enabled"])))
     return found

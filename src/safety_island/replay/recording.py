@@ -10,7 +10,7 @@ import sys
 import warnings
 import zipfile
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +19,7 @@ import numpy.typing as npt
 
 from safety_island.control.records import POINT, Records
 from safety_island.errors import IslandError
+from safety_island.messages.wire import NANOSECONDS, Time
 from safety_island.replay import check
 from safety_island.replay.check import Table
 
@@ -45,6 +46,9 @@ _ARRAYS = (
 )
 MAX_BYTES = 1 << 29
 """What the arrays of a recording may hold together: some hundred times the longest one."""
+_OF_NEWER = ("release", "steering_offset_update")
+"""Arrays of runs of Autoware's newer releases."""
+_RELEASE_OF = {"43": "0.43", "46": "0.46", "48": "0.48", "51": "0.51", "53": "0.53"}
 
 
 class RecordingError(IslandError):
@@ -65,6 +69,8 @@ class Recording:
     path_points: Table
     path_offsets: npt.NDArray[np.int64]
     overrides: dict[str, Any]
+    steering_offset: Table | None = None
+    """Offset [rad] that came on its topic before each tick, NaN for none; None: never any."""
 
     @property
     def scenario(self) -> str:
@@ -95,13 +101,29 @@ class Recording:
 
     def trajectory(self, tick: int) -> Records:
         """Points of the trajectory message in force at a tick: POINT records."""
-        path, first, end, _ = self.traj_select[tick]
-        begin = self.path_offsets[int(path)]
-        rows = self.path_points[begin + int(first) : begin + int(end)]
+        rows = self._rows(tick)
         points: Records = np.zeros(len(rows), POINT)
         for i, name in enumerate(POINT.names[: check.POINT_COLUMNS]):
             points[name] = rows[:, i]
+        times = self._times_ns(rows)
+        points["sec"][:-1], points["nanosec"][:-1] = np.divmod(times[1:], NANOSECONDS)
         return points
+
+    def first_time(self, tick: int) -> Time:
+        """time_from_start of the first point; each record holds that of the point after it."""
+        times = self._times_ns(self._rows(tick))
+        return Time.from_nanoseconds(int(times[0])) if len(times) else Time()
+
+    def _rows(self, tick: int) -> Table:
+        path, first, end, _ = self.traj_select[tick]
+        begin = self.path_offsets[int(path)]
+        return self.path_points[begin + int(first) : begin + int(end)]
+
+    @staticmethod
+    def _times_ns(rows: Table) -> npt.NDArray[np.int64]:
+        if rows.shape[1] <= check.TIME_COLUMN:
+            return np.zeros(len(rows), np.int64)
+        return np.rint(rows[:, check.TIME_COLUMN] * NANOSECONDS).astype(np.int64)
 
 
 def load(path: Path) -> Recording:
@@ -149,7 +171,8 @@ def _arrays(path: Path) -> dict[str, npt.NDArray[Any]]:
                 f"{path} is no recorded run: it lacks the array '{missing[0]}' "
                 f"(it holds {', '.join(data.files[:6])}, ...)"
             )
-        return {name: _array(data, name) for name in _ARRAYS}
+        found = [name for name in (*_ARRAYS, *_OF_NEWER) if name in data.files]
+        return {name: _array(data, name) for name in found}
 
 
 def _array(data: Any, name: str) -> npt.NDArray[Any]:
@@ -176,12 +199,30 @@ def _checked(path: Path, arrays: dict[str, npt.NDArray[Any]]) -> Recording:
             path_offsets=check.whole_numbers(arrays["path_offsets"], "path_offsets"),
             overrides=_overrides(str(arrays["params_json"])),
         )
+        if "release" in arrays:
+            recording = _of_release(recording, arrays)
         _check(recording)
         recording.state["steer"] = check.as_message(recording.state["steer"])
-        recording.path_points[:, 7:] = check.as_message(recording.path_points[:, 7:])
+        floats = slice(7, check.POINT_COLUMNS)
+        recording.path_points[:, floats] = check.as_message(recording.path_points[:, floats])
     except (ValueError, TypeError, IndexError) as error:
         raise RecordingError(f"{path} is no recorded run: {error}") from None
     return recording
+
+
+def _of_release(run: Recording, arrays: dict[str, npt.NDArray[Any]]) -> Recording:
+    """Return a run of a newer release: its rules, without the checks that it does not have."""
+    release = str(arrays["release"])
+    if release not in _RELEASE_OF:
+        raise ValueError(f"release is {release[:20]!r}, expected one of {', '.join(_RELEASE_OF)}")
+    offsets = None
+    if "steering_offset_update" in arrays:
+        offsets = check.numbers(arrays["steering_offset_update"], "steering_offset_update", 1)
+        if len(offsets) != run.ticks:
+            raise ValueError(f"steering_offset_update has {len(offsets)} ticks, not {run.ticks}")
+        offsets = check.as_message(offsets)
+    rules = {"autoware_release": _RELEASE_OF[release], "enable_deviation_checks": False}
+    return replace(run, overrides=run.overrides | rules, steering_offset=offsets)
 
 
 def _overrides(text: str) -> dict[str, Any]:
