@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import Any
 
 from safety_island.control import aot
+from safety_island.extras import require
 
 _PLAIN = os.environ.get("SAFETY_ISLAND_JIT", "1") == "0"
 
@@ -54,7 +55,11 @@ def _one_at_a_time(name: str) -> Iterator[None]:
 
 
 def _njit(**options: Any) -> Callable[[Any], Any]:
-    import numba
+    try:
+        import numba
+    except ImportError:
+        require("compile", "control without a library of compiled kernels")
+        raise
 
     from safety_island.control.kernel_cache import LOCATOR
 
@@ -86,6 +91,10 @@ class Entry:
         self.call: Callable[..., int] = function
         self._dispatcher = _njit(cache=True)(function) if JIT else None
         (ON_DEMAND if on_demand else ENTRIES).append(self)
+
+    def is_own(self) -> bool:
+        """Whether it is one of the island's, not of a test."""
+        return self.python.__module__.startswith("safety_island.")
 
     def signature(self) -> tuple[Any, ...]:
         """The Numba types of the arguments."""
