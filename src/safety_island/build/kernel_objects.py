@@ -43,12 +43,11 @@ class KernelObject:
     elf: ElfFile
 
 
-def kernel_objects(
-    machine: Machine, report: Report, on_demand: bool = False
-) -> list[KernelObject]:
+def kernel_objects(machine: Machine, report: Report, on_demand: bool = False) -> list[KernelObject]:
     """Return the objects for a machine: each kernel's, then that of the source hash.
 
-    ``report`` is told each kernel that is compiled; ``on_demand`` as in ``entries``. Raises BuildError with kernel, machine and why.
+    ``report`` is told each kernel that is compiled; ``on_demand`` as in ``entries``. Raises
+    BuildError with kernel, machine and why.
     """
     irs = kernel_irs(report, on_demand)
     folder = _folder(machine)
