@@ -240,7 +240,10 @@ def test_a_wheel_is_made_in_a_clone_only(tmp_path: Path, monkeypatch: pytest.Mon
             ("config", "show", "-t", "s32z270dc2_rtu0_r52@D"),
             "CONFIG_CONTROL_CMD_OUTPUT_DDS_AND_CAN=y",
         ),
-        (("can", "send", "--angle", "0.125", "--velocity", "12.25", "--print"), "0x100"),
+        (
+            ("can", "send", "--angle", "0.125", "--velocity", "12.25", "--print"),
+            "100#48E8010000000000",
+        ),
         (("run", "--platform", "sim", "--duration", "2"), ""),
         (("params", "show"), "wheel_base"),
         (("can", "dbc"), "BO_ 256"),
@@ -253,7 +256,7 @@ def test_commands_work_where_a_wheel_is_installed(
     result = installed.run(*arguments)
     assert result.returncode == 0, result.stderr
     assert said in result.stdout
-    assert "error" not in result.stderr
+    assert "island: error" not in result.stderr
 
 
 @pytest.mark.live
