@@ -1,12 +1,12 @@
 """OSQP behind the record: parity with the recordings, and every way to fail."""
 
-import builtins
 import math
 from typing import Any
 
 import numpy as np
 import pytest
 
+from safety_island import extras
 from safety_island.control.osqp_solver import OsqpSolver
 from safety_island.control.status import MpcStatus
 from safety_island.errors import ConfigurationError
@@ -72,14 +72,7 @@ def test_contradicting_bounds_never_give_a_vector(
 
 
 def test_missing_package_is_one_clear_line(monkeypatch: pytest.MonkeyPatch) -> None:
-    real = builtins.__import__
-
-    def without_osqp(name: str, *args: Any, **kwargs: Any) -> Any:
-        if name == "osqp":
-            raise ImportError("No module named 'osqp'", name="osqp")
-        return real(name, *args, **kwargs)
-
-    monkeypatch.setattr(builtins, "__import__", without_osqp)
+    monkeypatch.setattr(extras, "find_spec", lambda name: None)
     with pytest.raises(ConfigurationError, match=r"osqp.*not installed.*safety-island\[osqp\]"):
         OsqpSolver(50)
 

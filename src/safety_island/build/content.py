@@ -6,7 +6,7 @@ import json
 
 from safety_island.build.built import ABOUT, DOTCONFIG, FOLDER
 from safety_island.build.dependencies import files, packages
-from safety_island.build.revision import PACKAGE, PROJECT, Revision, package_files
+from safety_island.build.revision import PACKAGE, Revision, package_files
 from safety_island.control.aot import LIBRARY_NAME
 from safety_island.messages import compiled
 
@@ -21,7 +21,7 @@ def content(target: str, revision: Revision, made: dict[str, bytes]) -> dict[str
     ``made`` holds ``.config``, the library and the message types by the names that they have here.
     """
     found: dict[str, bytes] = {}
-    for package in packages(PROJECT / "pyproject.toml"):
+    for package in packages():
         found |= {place.as_posix(): source.read_bytes() for place, source in files(package)}
     for path in package_files():
         if path.suffix not in _NOT_CARRIED:

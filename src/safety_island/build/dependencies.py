@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Iterator
 from importlib.metadata import Distribution, PackageNotFoundError, distribution
 from pathlib import Path, PurePosixPath
@@ -12,6 +11,7 @@ from packaging.utils import canonicalize_name
 
 from safety_island.build.errors import BuildError
 
+PROJECT = "safety-island"
 LEFT_OUT = {
     "numba": "the kernels are compiled already",
     "llvmlite": "the kernels are compiled already",
@@ -26,17 +26,14 @@ _RECORDS = {"RECORD", "INSTALLER", "REQUESTED", "direct_url.json"}
 """Files of an installation: what they tell holds for another place."""
 
 
-def packages(pyproject: Path) -> list[Distribution]:
+def packages() -> list[Distribution]:
     """Return every package that the project needs to run, sorted by name.
 
-    Raises BuildError for one that is not installed, and outside a source tree.
+    Raises BuildError for one that is not installed.
     """
-    if not pyproject.is_file():
-        raise BuildError(f"{pyproject} is not there: builds are made in a source tree")
-    project = tomllib.loads(pyproject.read_text(encoding="utf-8"))["project"]
     found: dict[str, Distribution] = {}
     seen: set[tuple[str, frozenset[str]]] = set()
-    pending = [Requirement(text) for text in project["dependencies"]]
+    pending = list(_needs(_installed(PROJECT), set()))
     while pending:
         wanted = pending.pop()
         name = canonicalize_name(wanted.name)

@@ -45,6 +45,17 @@ def read_elf(data: bytes, name: str = "object file") -> ElfFile:
         raise BuildError(f"{name}: not an ELF file, or a damaged one: {error}") from None
 
 
+def shared_needs(data: bytes) -> dict[str, frozenset[str]]:
+    """Return the libraries that a shared library needs, and which versions of their symbols."""
+    file: Any = ELFFile(BytesIO(data))
+    tags = file.get_section_by_name(".dynamic").iter_tags()
+    found = {tag.needed: frozenset[str]() for tag in tags if tag.entry.d_tag == "DT_NEEDED"}
+    versions = file.get_section_by_name(".gnu.version_r")
+    for library, symbols in versions.iter_versions() if versions else ():
+        found[library.name] = frozenset(symbol.name for symbol in symbols)
+    return found
+
+
 def _symbols(file: Any) -> Iterator[tuple[str, bool]]:
     """Yield each symbol that is not local, and whether it is defined."""
     table = file.get_section_by_name(".symtab")

@@ -12,7 +12,7 @@ from safety_island.build.dependencies import packages
 from safety_island.build.kconfig import Resolved
 from safety_island.build.linker import find_compiler
 from safety_island.build.products import Product
-from safety_island.build.revision import PACKAGE, PROJECT, Revision, tree_hash
+from safety_island.build.revision import PACKAGE, Revision, tree_hash
 from safety_island.control.aot import sources_hash
 
 _COMPILERS = ("llvmlite", "numba", "numpy")
@@ -21,7 +21,7 @@ _COMPILERS = ("llvmlite", "numba", "numpy")
 def inputs(resolved: Resolved, product: Product, git: Revision) -> dict[str, Any]:
     """Return the inputs of a build, ready for JSON."""
     compiler = find_compiler()
-    carried = packages(PROJECT / "pyproject.toml")
+    carried = packages()
     return {
         "target": resolved.target.name,
         "program": product.name,

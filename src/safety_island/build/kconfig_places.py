@@ -6,30 +6,29 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from safety_island.build.revision import PACKAGE, source_tree
 from safety_island.build.targets import Target
-
-_PACKAGE = Path(__file__).parents[1]
-_PROJECT = _PACKAGE.parents[1]
-
-
-def _config_folder() -> Path:
-    """``config/`` of the source tree, or the copy inside an installed package."""
-    own = _PROJECT / "config"
-    return own if (own / "Kconfig").is_file() else _PACKAGE / "config"
 
 
 def _build_folder() -> Path:
     """``build/`` of the source tree, or of the current folder when there is no source tree."""
-    inside = (_PROJECT / "config" / "Kconfig").is_file()
-    return (_PROJECT if inside else Path.cwd()) / "build"
+    return (source_tree() or Path.cwd()) / "build"
 
 
 @dataclass(frozen=True)
 class Places:
-    """``config`` holds Kconfig and the shipped fragments, ``build`` a folder for each target."""
+    """``config`` holds Kconfig and the shipped fragments, ``build`` a folder for each target.
 
-    config: Path = field(default_factory=_config_folder)
+    The shipped files are part of the package; ``config/`` of a checkout is a link to them.
+    """
+
+    config: Path = PACKAGE / "config"
     build: Path = field(default_factory=_build_folder)
+
+    @property
+    def wheels(self) -> Path:
+        """Where wheels are made."""
+        return self.build.parent / "dist"
 
     @property
     def kconfig(self) -> Path:

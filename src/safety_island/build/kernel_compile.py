@@ -37,18 +37,23 @@ COMPILER = ["-m", kernel_ir.__name__]
 _OURS = ("NUMBA_", "SAFETY_ISLAND_KERNELS", "SAFETY_ISLAND_JIT")
 
 
-def entries() -> list[kernel.Entry]:
-    """Return the kernels that a library holds."""
-    import safety_island.control.follower  # noqa: F401  (defines every entry)
+def entries(on_demand: bool = False) -> list[kernel.Entry]:
+    """Return the kernels that a library holds.
 
-    return kernel.ENTRIES
+    ``on_demand``: also those that only the solver OSQP needs.
+    """
+    import safety_island.control.follower
+    import safety_island.control.qp_alone  # noqa: F401  (these two define every entry)
+
+    more = [item for item in kernel.ON_DEMAND if item.is_own()] if on_demand else []
+    return kernel.ENTRIES + more
 
 
-def kernel_irs(report: Report) -> dict[str, str]:
-    """Return the IR of every entry by its name. Raises BuildError for one that does not compile."""
+def kernel_irs(report: Report, on_demand: bool = False) -> dict[str, str]:
+    """Return the IR of ``entries`` by name. Raises BuildError for one that does not compile."""
     folder = ir_folder()
-    folder.mkdir(mode=0o700, exist_ok=True)
-    names = [entry.name for entry in entries()]
+    folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+    names = [entry.name for entry in entries(on_demand)]
     with _locked(folder, report):
         missing = [name for name in names if not (folder / f"{name}.ll").exists()]
         if missing:

@@ -43,12 +43,13 @@ class KernelObject:
     elf: ElfFile
 
 
-def kernel_objects(machine: Machine, report: Report) -> list[KernelObject]:
+def kernel_objects(machine: Machine, report: Report, on_demand: bool = False) -> list[KernelObject]:
     """Return the objects for a machine: each kernel's, then that of the source hash.
 
-    ``report`` is told each kernel that is compiled. Raises BuildError with kernel, machine and why.
+    ``report`` is told each kernel that is compiled; ``on_demand`` as in ``entries``. Raises
+    BuildError with kernel, machine and why.
     """
-    irs = kernel_irs(report)
+    irs = kernel_irs(report, on_demand)
     folder = _folder(machine)
     folder.mkdir(parents=True, exist_ok=True)
     found = []
@@ -69,7 +70,7 @@ def _compile(name: str, ir: str, machine: Machine) -> bytes:
     try:
         if name == SOURCES:
             return sources_object(sources_hash(), machine)
-        (entry,) = (entry for entry in entries() if entry.name == name)
+        (entry,) = (entry for entry in entries(on_demand=True) if entry.name == name)
         return compile_object(name, ir, entry.arguments, machine)
     except RuntimeError as error:  # what LLVM refuses
         why = " ".join(str(error).split())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import platform
 import shutil
 import subprocess
 import sys
@@ -17,6 +18,8 @@ from safety_island.build.machines import Machine
 
 ZIG = "ziglang==0.17.0"
 """The package that brings a C compiler where the machine has none."""
+GLIBC = "2.31"
+"""The oldest C library that a library runs with: Debian 11, Ubuntu 20.04, every JetPack since 5."""
 _FLAGS = (
     "-shared",
     "-nostartfiles",
@@ -29,6 +32,13 @@ _FLAGS = (
 )
 
 
+_CROSS = {
+    "aarch64": "gcc-aarch64-linux-gnu libc6-dev-arm64-cross",
+    "x86_64": "gcc-x86-64-linux-gnu libc6-dev-amd64-cross",
+}
+"""Debian's packages that bring a compiler for another machine."""
+
+
 class Compiler(NamedTuple):
     """How a C compiler is called, and which one it is."""
 
@@ -36,9 +46,13 @@ class Compiler(NamedTuple):
     name: str
 
 
-def find_compiler() -> Compiler | None:
-    """Return ``cc``, else zig of the package ``ziglang``, None without both."""
-    path = shutil.which("cc")
+def find_compiler(machine: Machine | None = None) -> Compiler | None:
+    """Return ``cc``, else zig of the package ``ziglang``, None without both.
+
+    For a machine that is not this one: the cross compiler of that name in place of ``cc``.
+    """
+    is_other = machine is not None and machine.name != platform.machine()
+    path = shutil.which(f"{machine.name}-linux-gnu-gcc" if machine and is_other else "cc")
     if path is not None:
         return Compiler((path,), _said_by(path))
     if find_spec("ziglang") is not None:
@@ -49,15 +63,18 @@ def find_compiler() -> Compiler | None:
     return None
 
 
-def needed_compiler() -> Compiler:
+def needed_compiler(machine: Machine | None = None) -> Compiler:
     """Return the compiler. Raises BuildError that says how to get one."""
-    found = find_compiler()
-    if found is None:
-        raise BuildError(
-            "no C compiler to link with: install one (on Debian: sudo apt-get install gcc "
-            f"libc6-dev) or run: .venv/bin/python -m pip install {ZIG}"
-        )
-    return found
+    found = find_compiler(machine)
+    if found is not None:
+        return found
+    debian = "gcc libc6-dev"
+    if machine is not None and machine.name != platform.machine():
+        debian = _CROSS.get(machine.name, debian)
+    raise BuildError(
+        f"no C compiler to link with: install one (on Debian: sudo apt-get install {debian}) "
+        f"or run: .venv/bin/python -m pip install {ZIG}"
+    )
 
 
 def link_shared(objects: Sequence[Path], output: Path, machine: Machine) -> str:
@@ -65,12 +82,12 @@ def link_shared(objects: Sequence[Path], output: Path, machine: Machine) -> str:
 
     Raises BuildError with the linker's own words.
     """
-    compiler = needed_compiler()
+    compiler = needed_compiler(machine)
     files = [str(path) for path in objects]
     name = f"-Wl,-soname,{output.name}"
     command = [*compiler.command, *_FLAGS, name, "-o", str(output), *files, "-lm"]
     if compiler.name.startswith("zig"):
-        command += ["-target", machine.triple.replace("-unknown", ""), "-s"]
+        command += ["-target", f"{machine.triple.replace('-unknown', '')}.{GLIBC}", "-s"]
     else:
         command += ["-Wl,--strip-all"]
     _run(command, f"{output.name} cannot be linked")

@@ -30,6 +30,7 @@ from safety_island.build.products import APPLICATION, Product
 from safety_island.build.pyz import write_pyz
 from safety_island.build.revision import revision
 from safety_island.control.aot import LIBRARY_NAME
+from safety_island.extras import require
 from safety_island.messages import compiled, registry
 
 Say = Callable[[str], None]
@@ -42,6 +43,7 @@ class Build:
     """One build. ``run`` raises BuildError when it cannot be finished."""
 
     def __init__(self, resolved: Resolved, product: Product, places: Places, say: Say) -> None:
+        require("compile", "island build")
         self.target = resolved.target
         self.machine: Machine = machine_of(resolved.target)
         self.folder = places.dotconfig(resolved.target).parent

@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import NamedTuple
 
 PACKAGE = Path(__file__).parents[1]
-PROJECT = PACKAGE.parents[1]
 _IGNORED = "__pycache__"
 
 
@@ -20,12 +19,19 @@ class Revision(NamedTuple):
     modified: bool
 
 
+def source_tree() -> Path | None:
+    """Return the folder of the checkout (or unpacked sdist) that runs, None when installed."""
+    root = PACKAGE.parents[1]
+    return root if (root / "pyproject.toml").is_file() and PACKAGE.parent.name == "src" else None
+
+
 def revision() -> Revision:
-    """Return the revision of the source tree."""
-    commit = _git("rev-parse", "HEAD")
-    if commit is None:
+    """Return the revision of the source tree; an installed package has none."""
+    root = source_tree()
+    commit = _git(root, "rev-parse", "HEAD") if root is not None else None
+    if root is None or commit is None:
         return Revision(None, False)
-    changes = _git("status", "--porcelain", "--", "src", "config", "pyproject.toml")
+    changes = _git(root, "status", "--porcelain", "--", "src", "pyproject.toml")
     return Revision(commit.strip(), bool(changes))
 
 
@@ -49,10 +55,10 @@ def _files(folder: Path) -> Iterator[Path]:
             yield path
 
 
-def _git(*arguments: str) -> str | None:
+def _git(root: Path, *arguments: str) -> str | None:
     try:
         done = subprocess.run(
-            ["git", "-C", str(PROJECT), *arguments], capture_output=True, text=True, check=False
+            ["git", "-C", str(root), *arguments], capture_output=True, text=True, check=False
         )
     except OSError:
         return None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 
 from safety_island.cli import options
 from safety_island.cli.jsonlines import JsonLines
@@ -10,6 +11,8 @@ from safety_island.cli.parser import teach
 from safety_island.cli.stopping import StopAtOnce
 from safety_island.cli.tell import tell, tell_lost
 
+SHIPPED = Path(__file__).parents[1] / "demo" / "bridge" / "bridge-config.yaml"
+"""The bridge file of the contract; ``demo/bridge`` of a checkout is a link to its folder."""
 SWITCH = {"true": True, "false": False}
 
 
@@ -22,16 +25,20 @@ Forward topics from one DDS domain to another, as the file says (the schema of R
 domain_bridge). Messages pass as bytes: no type needs to be known. A route opens when its publisher
 is there, with its reliability and durability; who comes later changes nothing for those who are
 there. A publisher that goes, and a message that is disposed, are gone beyond the bridge as well. A
-bridge does not forward what it published itself.
+bridge does not forward what it published itself. Without a file it forwards the island's six topics
+between domains 1 and 2.
 """,
-        (
-            "island bridge demo/bridge/bridge-config.yaml",
-            "the island's six topics, domains 1 and 2",
-        ),
+        ("island bridge", "the island's six topics, domains 1 and 2"),
         ("island bridge --from 7 --to 8 my.yaml", "other domains than in the file"),
         ("island bridge --interface tap0 a.yaml b.yaml", "two files, on a network"),
     )
-    parser.add_argument("config", nargs="+", metavar="CONFIG", help="bridge file (YAML)")
+    parser.add_argument(
+        "config",
+        nargs="*",
+        metavar="CONFIG",
+        default=[str(SHIPPED)],
+        help=f"bridge file (YAML; default: {SHIPPED})",
+    )
     parser.add_argument(
         "--from",
         dest="from_domain",

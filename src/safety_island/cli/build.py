@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import argparse
+import platform
 import shutil
+from collections.abc import Callable
 from pathlib import Path
 from time import monotonic
 from typing import TYPE_CHECKING
 
 from safety_island.build.built import refuse_in_built
+from safety_island.build.machines import HOSTS
 from safety_island.build.products import APPLICATION, TEST_PROGRAMS, Product
 from safety_island.build.targets import NAMES
 from safety_island.cli.configuration import add_configuration, resolved
@@ -34,6 +37,8 @@ with nothing changed does nothing. The first one compiles the kernels, which tak
         ("island build -t s32z270dc2_rtu0_r52@D", "kernels for the Cortex-R52"),
         ("island build -t freertos_posix -D LOG_LEVEL=2", "the simulator, with another log level"),
         ("island build -t posix --dds-publisher", "the program that publishes sample messages"),
+        ("island build --wheel", "a wheel with the kernels inside, which needs no compiler"),
+        ("island build --wheel aarch64", "the same for another processor"),
         ("island build -c", "remove every build"),
     )
     parser.add_argument("-t", "--target", metavar="TARGET", help=", ".join(NAMES))
@@ -44,6 +49,14 @@ with nothing changed does nothing. The first one compiles the kernels, which tak
         help="remove all builds, saved menus included, and exit",
     )
     add_configuration(parser)
+    parser.add_argument(
+        "--wheel",
+        nargs="?",
+        const=platform.machine(),
+        metavar="MACHINE",
+        help=f"make a wheel with compiled kernels inside, in dist/, for {' or '.join(HOSTS)} "
+        "(default: this machine)",
+    )
     programs = parser.add_mutually_exclusive_group()
     for product in TEST_PROGRAMS:
         programs.add_argument(
@@ -61,6 +74,8 @@ def execute(arguments: argparse.Namespace) -> int:
     refuse_in_built("island build")
     if arguments.clean:
         return _clean()
+    if arguments.wheel is not None:
+        return _build_wheel(arguments)
     if arguments.target is None:
         raise UsageError(f"-t TARGET is missing, expected one of {', '.join(NAMES)}")
     return _build(arguments, arguments.product)
@@ -82,14 +97,35 @@ def _clean() -> int:
     return 0
 
 
-def _build(arguments: argparse.Namespace, product: Product) -> int:
-    from safety_island.build.pipeline import Build
+def _build_wheel(arguments: argparse.Namespace) -> int:
+    from safety_island.build.wheel import build_wheel
 
+    for option in ("target", "conf", "define"):
+        if getattr(arguments, option):
+            raise UsageError("--wheel is for every target: give no -t, --conf and -D with it")
+    if arguments.wheel not in HOSTS:
+        raise UsageError(f"--wheel {arguments.wheel}: expected {' or '.join(HOSTS)}")
+    say = _steps()
+    made = build_wheel(HOSTS[arguments.wheel], places().wheels, say)
+    say("done")
+    print(f"  {made.stat().st_size:>12,} B  {_shown(made)}")
+    return 0
+
+
+def _steps() -> Callable[[str], None]:
+    """Print each step with the time since the start."""
     started = monotonic()
 
     def say(step: str) -> None:
         print(f"[{monotonic() - started:5.1f} s] {step}", flush=True)
 
+    return say
+
+
+def _build(arguments: argparse.Namespace, product: Product) -> int:
+    from safety_island.build.pipeline import Build
+
+    say = _steps()
     build = Build(resolved(arguments), product, places(), say)
     if build.is_current():
         print(f"{_shown(build.folder)} is up to date, nothing to do")

@@ -47,7 +47,7 @@ def _missing(on_demand: bool) -> list[str]:
     from safety_island.control import kernel
 
     wanted = kernel.ENTRIES + (kernel.ON_DEMAND if on_demand else [])
-    own = [item for item in wanted if item.python.__module__.startswith("safety_island.")]
+    own = [item for item in wanted if item.is_own()]
     return [item.name for item in own if kernel.JIT and not item.is_on_disk()]
 
 

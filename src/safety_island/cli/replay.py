@@ -6,12 +6,14 @@ import argparse
 import json
 import math
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from safety_island.cli.options import add_json
 from safety_island.cli.parser import teach
 from safety_island.cli.progress import prepare_kernels
+from safety_island.extras import is_installed, require
 from safety_island.guard import Verdict as GuardVerdict
 
 if TYPE_CHECKING:
@@ -57,6 +59,7 @@ def execute(arguments: argparse.Namespace) -> int:
     from safety_island.replay.recording import find
 
     paths = find(arguments.paths)
+    _require_solver(paths, arguments.solver)
     prepare_kernels()
     verdicts = []
     for index, path in enumerate(paths):
@@ -70,6 +73,14 @@ def execute(arguments: argparse.Namespace) -> int:
     else:
         print(f"{len(verdicts)} runs: {passed} passed, {len(verdicts) - passed} failed")
     return 0 if passed == len(verdicts) else 1
+
+
+def _require_solver(paths: Sequence[Path], solver: str | None) -> None:
+    """Raise ConfigurationError now when a run needs OSQP and it is not there, not in the middle."""
+    from safety_island.replay.recording import load
+
+    if not is_installed("osqp") and "osqp" in (solver or load(path).solver for path in paths):
+        require("osqp", "a run by the solver osqp", ", or replay with --solver daqp")
 
 
 def _replay(path: Path, arguments: argparse.Namespace, place: str) -> Verdict:

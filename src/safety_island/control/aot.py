@@ -1,7 +1,8 @@
 """Kernels that were compiled ahead of time: a shared library, so that no compiler runs here.
 
-The library is made by ``island build`` and found by ``SAFETY_ISLAND_KERNELS``, or beside this file
-in a built island. It knows the kernel sources it was made from and is refused with any others.
+The library is made by ``island build``. ``SAFETY_ISLAND_KERNELS`` names it, or it is beside this
+file: in a built island, and where a platform wheel is installed. It knows the kernel sources it was
+made from and is refused with any others.
 """
 
 from __future__ import annotations

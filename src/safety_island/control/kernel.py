@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from safety_island.control import aot
+from safety_island.extras import require
 
 if TYPE_CHECKING:
     from safety_island.control.kernel_cache import Place
@@ -64,7 +65,11 @@ def _place() -> Place:
 
 
 def _njit(**options: Any) -> Callable[[Any], Any]:
-    import numba
+    try:
+        import numba
+    except ImportError:
+        require("compile", "control without a library of compiled kernels")
+        raise
 
     from safety_island.control.kernel_cache import LOCATOR
 
@@ -98,6 +103,10 @@ class Entry:
         if JIT:
             self._dispatcher = _njit(cache=_place().folder is not None)(function)
         (ON_DEMAND if on_demand else ENTRIES).append(self)
+
+    def is_own(self) -> bool:
+        """Whether it is one of the island's, not of a test."""
+        return self.python.__module__.startswith("safety_island.")
 
     def signature(self) -> tuple[Any, ...]:
         """The Numba types of the arguments."""

@@ -19,7 +19,7 @@ from safety_island.control.qp_alone import check_problem, solve_problem
 from safety_island.control.qp_check import MAX_VIOLATION
 from safety_island.control.qp_records import QP
 from safety_island.control.status import MpcStatus
-from safety_island.errors import ConfigurationError
+from safety_island.extras import require
 
 Array = npt.NDArray[np.float64]
 
@@ -48,14 +48,10 @@ _FAILURES = {
 
 def _libraries() -> tuple[Any, Any]:
     """Return osqp and scipy.sparse, or say how to get them."""
-    try:
-        import osqp
-        import scipy.sparse
-    except ImportError as error:
-        raise ConfigurationError(
-            f"qp_solver_type: osqp needs the package {error.name!r}, which is not installed; "
-            'install "safety-island[osqp]", or choose daqp or unconstraint_fast'
-        ) from error
+    require("osqp", "qp_solver_type: osqp", ", or choose daqp or unconstraint_fast")
+    import osqp
+    import scipy.sparse
+
     return osqp, scipy.sparse
 
 

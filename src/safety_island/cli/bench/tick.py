@@ -9,6 +9,7 @@ import sys
 from safety_island.bench.ratios import AS_SHIPPED, HEAP_TUNED, METHOD, WHOLE_NODE, YARDSTICK
 from safety_island.cli.options import add_json
 from safety_island.cli.progress import prepare_kernels, tick_progress
+from safety_island.extras import require
 
 HELP = "one tick of both controllers"
 SOLVERS = ("unconstraint_fast", "daqp")
@@ -36,6 +37,7 @@ def _rounds(text: str) -> int:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Measure."""
+    require("osqp", "island bench tick (its yardstick is a solve by OSQP)")
     from safety_island.bench.tick import measure
 
     prepare_kernels()
