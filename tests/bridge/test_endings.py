@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import ctypes as ct
 import time
 
 import pytest
-from cyclonedds import _clayer
 
+from safety_island.dds import raw_topic
 from safety_island.dds.endpoints import Publisher, Subscription
 from safety_island.dds.qos import LATCHED, Qos
 from safety_island.messages.inputs import STEERING, Steering, encode_steering
@@ -136,7 +137,10 @@ def test_a_publisher_that_unregisters_is_gone_until_it_sends_again(rig: Rig) -> 
     publisher, subscription = _publisher(rig), _subscription(rig)
     assert publisher.write(_sample(1))
     assert rig.receive(subscription) == [_sample(1)]
-    assert _clayer.ddspy_unregister_instance(publisher._ref, bytes((0, 1, 0, 0))) == 0
+    unregister = raw_topic._function(
+        "dds_unregister_instance", ct.c_int32, raw_topic._entity, ct.c_char_p
+    )
+    assert unregister(publisher._ref, bytes(1)) == 0
     rig.until(lambda: not subscription.matched())
     assert _late(rig) == []
     assert publisher.write(_sample(2))

@@ -1,8 +1,8 @@
 """Endpoints with type information as recent rmw_cyclonedds announces it (XTypes, dynamic types).
 
 Run as ``python -m tests.dds.dynamic_types DOMAIN TYPE...``: one reader and one writer for each
-type, on ``/types/Name``; prints ``TYPE WRITERS READERS``, the numbers of matched peers, whenever
-they change, and ends when its standard input closes.
+type, on ``/types/package/Name``; prints ``TYPE WRITERS READERS``, the numbers of matched peers,
+whenever they change, and ends when its standard input closes.
 """
 
 from __future__ import annotations
@@ -163,7 +163,7 @@ class TypeBuilder:
 
 def topic_of(type_name: str) -> str:
     """Return the topic that this program uses for a type."""
-    return f"/types/{type_name.split('/')[2]}"
+    return f"/types/{type_name.replace('/msg/', '/')}"
 
 
 def main(domain_id: int, type_names: list[str]) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import struct
 from importlib.metadata import version
 from typing import Any
 
@@ -10,7 +9,7 @@ import pytest
 from cyclonedds import _clayer
 from cyclonedds.core import Entity
 
-from safety_island.dds import binding
+from safety_island.dds import binding, raw_topic
 from safety_island.dds.endpoints import Publisher, Subscription
 from safety_island.dds.errors import DdsError
 from safety_island.dds.qos import DEFAULT
@@ -43,60 +42,23 @@ def test_another_release_is_refused_in_one_line(monkeypatch: pytest.MonkeyPatch)
 
 
 def test_the_functions_exist() -> None:
-    for name in ("take", "write", "dispose", "take_endpoint", "get_matched_publication_data"):
+    for name in ("take_endpoint", "get_matched_publication_data"):
         assert callable(getattr(_clayer, f"ddspy_{name}"))
 
 
-def test_take_gives_bytes_and_a_sample_info(pair: tuple[Publisher, Subscription]) -> None:
-    publisher, subscription = pair
-    assert _clayer.ddspy_take(subscription._ref, binding.ANY, 10) == []
-    assert _clayer.ddspy_write(publisher._ref, DATA) == 0
-    ((data, info),) = _clayer.ddspy_take(subscription._ref, binding.ANY, 10)
-    assert type(data) is bytes and data == DATA
-    assert info.valid_data is True
-    assert isinstance(info.source_timestamp, int) and info.source_timestamp > 1e18
-    assert isinstance(info.publication_handle, int)
-
-
-def test_take_and_write_on_a_dead_entity_give_negative_numbers() -> None:
-    assert _clayer.ddspy_take(1, binding.ANY, 1) < 0
-    assert _clayer.ddspy_write(1, DATA) < 0
-    with pytest.raises(DdsError, match=r"taking samples failed: "):
-        binding.take(1, 1)
+def test_reading_discovery_on_a_dead_entity_is_an_error() -> None:
     with pytest.raises(DdsError, match="reading discovery failed"):
         binding.take_endpoints(1, 1)
-
-
-def test_the_library_validates_what_is_written(pair: tuple[Publisher, Subscription]) -> None:
-    publisher, _ = pair
-    assert binding.write(publisher._ref, DATA) == 0
-    assert binding.write(publisher._ref, DATA[:-4]) == binding.RETCODE_BAD_PARAMETER
-
-
-@pytest.mark.parametrize("size", range(4))
-def test_data_shorter_than_a_header_never_reach_the_library(
-    size: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(_clayer, "ddspy_write", _not_to_be_called)
-    assert binding.write(1, bytes(size)) == binding.RETCODE_BAD_PARAMETER
 
 
 def test_data_are_filled_up_to_a_multiple_of_four() -> None:
     assert [len(binding.filled(bytes(n))) for n in range(4, 10)] == [4, 8, 8, 8, 8, 12]
 
 
-def test_big_endian_becomes_little_endian(pair: tuple[Publisher, Subscription]) -> None:
-    publisher, subscription = pair
-    big = b"\0\0\0\0" + struct.pack(">iIf", 1, 2, 0.5)
-    assert binding.write(publisher._ref, big) == 0
-    (sample,) = binding.take(subscription._ref, 10)
-    assert sample.data == DATA
-
-
 def test_a_writer_is_found_by_its_handle(pair: tuple[Publisher, Subscription]) -> None:
     publisher, subscription = pair
-    binding.write(publisher._ref, DATA)
-    (sample,) = binding.take(subscription._ref, 10)
+    raw_topic.write(publisher._ref, DATA)
+    (sample,) = raw_topic.take(subscription._ref, 10)
     found = binding.matched_writer(subscription._ref, sample.publication_handle)
     assert found == publisher.guid
     assert binding.matched_writer(subscription._ref, 12345) is None
@@ -119,7 +81,7 @@ def test_a_peer_s_policies_that_cannot_be_read_do_not_stop_discovery(
 def test_what_cannot_be_disposed_is_told(pair: tuple[Publisher, Subscription]) -> None:
     publisher, _ = pair
     publisher.close()
-    assert binding.dispose(publisher._ref) < 0
+    assert raw_topic.dispose(publisher._ref) < 0
     publisher.withdraw()
     assert (publisher.failed, bool(publisher.last_error)) == (1, True)
 
@@ -130,9 +92,5 @@ def test_delete_is_at_once_and_only_once(participant: NewParticipant) -> None:
     entity: Any = publisher._writer
     binding.delete(entity)
     assert entity._ref not in Entity._entities
-    assert _clayer.ddspy_write(publisher._ref, DATA) < 0
+    assert raw_topic.write(publisher._ref, DATA) < 0
     binding.delete(entity)
-
-
-def _not_to_be_called(*_: object) -> int:
-    raise AssertionError

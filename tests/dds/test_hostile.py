@@ -16,8 +16,8 @@ import pytest
 from safety_island.control.records import new_points
 from safety_island.dds import topics
 from safety_island.dds.endpoints import Publisher, Subscription
-from safety_island.dds.opaque import OpaqueTopic
 from safety_island.dds.qos import DEFAULT
+from safety_island.dds.raw_topic import OpaqueTopic
 from safety_island.dds.topics import TopicEntry
 from safety_island.messages import inputs
 from safety_island.messages.errors import DecodeError

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import threading
 from dataclasses import dataclass
-from typing import Any
 
 import pytest
 from cyclonedds.core import DDSException
@@ -21,9 +20,9 @@ from safety_island.dds import presence, topics
 from safety_island.dds.config import DdsConfig
 from safety_island.dds.endpoints import Subscription
 from safety_island.dds.errors import DdsError
-from safety_island.dds.opaque import OpaqueTopic
 from safety_island.dds.participant import Participant
 from safety_island.dds.qos import DEFAULT, LATCHED, Qos
+from safety_island.dds.raw_topic import OpaqueTopic
 from safety_island.errors import ConfigurationError
 from safety_island.messages import codec, inputs, registry
 from safety_island.messages.wire import Time
@@ -287,7 +286,7 @@ def test_an_unknown_type_matches_a_typed_program_of_others(
     assert wait_for(subscription.take_newest).data == REPORT
 
 
-def _opaque(own: Participant) -> Topic[Any]:
+def _opaque(own: Participant) -> OpaqueTopic:
     return OpaqueTopic(own._participant, "rt" + STEERING.name, STEERING.type_name)
 
 

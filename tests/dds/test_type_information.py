@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from safety_island.dds.opaque import OpaqueTopic
 from safety_island.dds.qos import DEFAULT, Qos
+from safety_island.dds.raw_topic import OpaqueTopic
 from safety_island.messages import registry
 from tests.dds.conftest import NewParticipant
 from tests.dds.dynamic_types import topic_of

@@ -14,7 +14,7 @@ import pytest
 
 from safety_island.control.follower import TrajectoryFollower
 from safety_island.dds import topics
-from safety_island.dds.opaque import OpaqueTopic
+from safety_island.dds.raw_topic import OpaqueTopic
 from safety_island.dds.topics import TopicEntry
 from safety_island.gate.reason import SampleReason
 from safety_island.node.controller import ControllerNode

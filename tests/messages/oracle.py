@@ -10,9 +10,9 @@ import numpy as np
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from safety_island import messages
-from safety_island.dds.types import cyclone_type
 from safety_island.messages import registry
 from safety_island.messages.description import Array, Element, FieldType, Named, Primitive, Sequence
+from tests.messages.cyclone_types import cyclone_type
 
 MSG_TEXTS = {
     "autoware_control_msgs/msg/Lateral": """
@@ -63,6 +63,12 @@ MSG_TEXTS = {
         bool is_autonomous_mode_available
         bool is_local_mode_available
         bool is_remote_mode_available""",
+    "autoware_internal_debug_msgs/msg/Float32Stamped": """
+        builtin_interfaces/Time stamp
+        float32 data""",
+    "autoware_internal_debug_msgs/msg/Float64Stamped": """
+        builtin_interfaces/Time stamp
+        float64 data""",
     "tier4_debug_msgs/msg/Float64Stamped": """
         builtin_interfaces/Time stamp
         float64 data""",

@@ -22,9 +22,6 @@ MINIMUM_WRITE = 4
 
 _convert_qos: Any = cqos_to_qos
 
-_NO_KEY = bytes((0, 1, 0, 0))
-"""Serialized key of a topic that has none: the header alone."""
-
 RETCODE_BAD_PARAMETER = -3
 RETCODE_TIMEOUT = -10
 
@@ -78,44 +75,6 @@ def check_version() -> None:
             f"found cyclonedds {found}, expected exactly {PINNED_VERSION};"
             f" run: pip install cyclonedds=={PINNED_VERSION}"
         )
-
-
-def take(reader: int, limit: int) -> list[RawSample]:
-    """Take up to ``limit`` samples, oldest first, without decoding them.
-
-    Raises DdsError with the return code of the library.
-    """
-    found = _clayer.ddspy_take(reader, ANY, limit)
-    if isinstance(found, int):
-        raise DdsError(f"taking samples failed: {strerror(found)}")
-    return [
-        RawSample(
-            data,
-            info.valid_data,
-            info.source_timestamp,
-            info.publication_handle,
-            info.instance_state,
-        )
-        for data, info in found
-    ]
-
-
-def write(writer: int, data: bytes) -> int:
-    """Write serialized CDR (header included) and return 0 or a negative return code.
-
-    Data shorter than a header are refused here. RTPS wants a multiple of four bytes; the C layer
-    reads that far, so the data are filled up.
-    """
-    if len(data) < MINIMUM_WRITE:
-        return RETCODE_BAD_PARAMETER
-    code: int = _clayer.ddspy_write(writer, filled(data))
-    return code
-
-
-def dispose(writer: int) -> int:
-    """Take back what a writer of a topic without key has said; 0 or a negative return code."""
-    code: int = _clayer.ddspy_dispose(writer, _NO_KEY)
-    return code
 
 
 def filled(data: bytes) -> bytes:

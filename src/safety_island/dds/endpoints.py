@@ -12,10 +12,9 @@ from cyclonedds.pub import DataWriter
 from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
 
-from safety_island.dds import binding, opaque
+from safety_island.dds import binding, raw_topic
 from safety_island.dds.errors import DdsError
 from safety_island.dds.names import ros_topic_name
-from safety_island.dds.opaque import OpaqueTopic
 from safety_island.dds.qos import Qos, cyclone_qos
 from safety_island.dds.sample import Sample
 from safety_island.dds.types import type_hash_data
@@ -47,8 +46,6 @@ class Publisher:
         wanted = cyclone_qos(qos, type_hash_data(type_name), writer=True)
         self._writer: DataWriter[Any] = _create(DataWriter, participant, topic, wanted)
         self._ref: int = self._writer._ref
-        layer = opaque if isinstance(topic, OpaqueTopic) else binding
-        self._write, self._dispose = layer.write, layer.dispose
         self._on_close = on_close
         self.guid: bytes = self._writer.guid.bytes
 
@@ -58,7 +55,7 @@ class Publisher:
         Never raises and never waits longer than ``qos.MAX_BLOCKING_NS``; a refusal (no CDR of this
         type, or no room in time) is counted and told in ``last_error``.
         """
-        code = self._write(self._ref, data)
+        code = raw_topic.write(self._ref, data)
         if code < 0:
             self.failed += 1
             self.last_error = binding.strerror(code)
@@ -71,7 +68,7 @@ class Publisher:
 
         Subscriptions that had it receive a notice without data.
         """
-        code = self._dispose(self._ref)
+        code = raw_topic.dispose(self._ref)
         if code < 0:
             self.failed += 1
             self.last_error = binding.strerror(code)
@@ -114,7 +111,6 @@ class Subscription:
         self._filter = WriterFilter(topic._ref)
         self._topic = topic
         self._new_reader = partial(_create, DataReader, participant, topic, wanted)
-        self._raw = opaque.take if isinstance(topic, OpaqueTopic) else binding.take
         self._on_close, self._on_change = on_close, on_change
         self._open()
 
@@ -165,7 +161,7 @@ class Subscription:
     def take_raw(self) -> list[binding.RawSample]:
         """Return all samples and notices since the last call, oldest first."""
         taken: list[binding.RawSample] = []
-        while len(batch := self._raw(self._ref, _BATCH)) == _BATCH:
+        while len(batch := raw_topic.take(self._ref, _BATCH)) == _BATCH:
             taken += batch
         return taken + batch
 
@@ -181,7 +177,7 @@ class Subscription:
 
     def _take(self) -> list[binding.RawSample]:
         samples: list[binding.RawSample] = []
-        taken = self._raw(self._ref, _BATCH)
+        taken = raw_topic.take(self._ref, _BATCH)
         samples += [raw for raw in taken if raw.valid]
         self.invalid += len(taken) - len(samples)
         self.received += len(samples)

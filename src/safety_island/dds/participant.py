@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 from types import TracebackType
-from typing import Any
 
 from cyclonedds.core import DDSException, ReadCondition, WaitSet
 from cyclonedds.domain import DomainParticipant
 from cyclonedds.qos import Policy
 from cyclonedds.qos import Qos as CycloneQos
-from cyclonedds.topic import Topic
 
 from safety_island.dds import binding
 from safety_island.dds.config import DdsConfig
@@ -20,7 +18,6 @@ from safety_island.dds.endpoints import Publisher, Subscription
 from safety_island.dds.errors import DdsError
 from safety_island.dds.mismatch import why_not
 from safety_island.dds.names import dds_topic_name
-from safety_island.dds.opaque import OpaqueTopic
 from safety_island.dds.presence import (
     PARTICIPANT_USER_DATA,
     check_node_name,
@@ -31,8 +28,7 @@ from safety_island.dds.presence import QOS as PRESENCE_QOS
 from safety_island.dds.presence import TOPIC as PRESENCE_TOPIC
 from safety_island.dds.presence import TYPE as PRESENCE_TYPE
 from safety_island.dds.qos import DEFAULT, Qos
-from safety_island.dds.types import cyclone_type
-from safety_island.messages import registry
+from safety_island.dds.raw_topic import RawTopic
 from safety_island.messages.errors import DecodeError
 
 DEFAULT_NODE_NAME = "safety_island"
@@ -55,7 +51,7 @@ class Participant:
         check_node_name(node_name, namespace)
         self.domain_id = domain_id
         self._name = (namespace, node_name)
-        self._topics: dict[tuple[str, str], Topic[Any]] = {}
+        self._topics: dict[tuple[str, str], RawTopic] = {}
         self._publishers: list[Publisher] = []
         self._subscriptions: list[Subscription] = []
         open_domain(domain_id, config or DdsConfig())
@@ -206,18 +202,16 @@ class Participant:
         found = self._topic(dds_topic, type_name)
         return Publisher(self._participant, found, type_name, qos, self._forget)
 
-    def _topic(self, dds_topic: str, type_name: str) -> Topic[Any]:
+    def _topic(self, dds_topic: str, type_name: str) -> RawTopic:
         key = (dds_topic, type_name)
         if key not in self._topics:
             self._topics[key] = self._own_topic(dds_topic, type_name)
         return self._topics[key]
 
-    def _own_topic(self, dds_topic: str, type_name: str) -> Topic[Any]:
+    def _own_topic(self, dds_topic: str, type_name: str) -> RawTopic:
         """Return a topic entity that is shared with nothing else, so that it may be filtered."""
         try:
-            if registry.known(type_name):
-                return Topic(self._participant, dds_topic, cyclone_type(type_name))
-            return OpaqueTopic(self._participant, dds_topic, type_name)
+            return RawTopic(self._participant, dds_topic, type_name)
         except DDSException as problem:
             raise DdsError(f"topic {dds_topic} of {type_name}: {problem}") from None
 

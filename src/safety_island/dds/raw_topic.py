@@ -1,10 +1,8 @@
-"""Topics whose type is not known: samples pass through as bytes.
+"""Topics whose samples are serialized bytes, through the library's public C functions.
 
-The type has the right name and says nothing of its content, and no type information is announced:
-peers then match by the name alone, as they do with every ROS 2 release. (A stand-in type with type
-information would be compared with the peer's and refused.) The price: nobody checks the bytes, and
-a big-endian sample of an unknown type cannot be told from a little-endian one.
-Uses the library's public C functions through ctypes; other Python threads run meanwhile.
+A topic of a registered type has the library check every sample and swap a big-endian one; of an
+unknown type samples pass through as bytes. Both match by the name of the type alone: see
+``types.py``.
 """
 
 from __future__ import annotations
@@ -17,42 +15,22 @@ from cyclonedds.domain import DomainParticipant
 from cyclonedds.internal import DDS, dds_c_t
 from cyclonedds.topic import Topic
 
-from safety_island.dds.binding import ANY, MINIMUM_WRITE, RETCODE_BAD_PARAMETER, RawSample, filled
+from safety_island.dds.binding import (
+    ANY,
+    MINIMUM_WRITE,
+    RETCODE_BAD_PARAMETER,
+    RawSample,
+    filled,
+    strerror,
+)
 from safety_island.dds.errors import DdsError
-from safety_island.messages.registry import dds_type_name
+from safety_island.dds.types import Descriptor, descriptor_of, opaque_descriptor
 
 _library: Any = DDS._dll_handle
-_OP_ADDRESS_1_BYTE = 0x01010000
-_OPERATIONS = (ct.c_uint32 * 3)(_OP_ADDRESS_1_BYTE, 0, 0)
-_FIXED_SIZE = 1 << 3
-_XCDR1 = 1
 _DATA = 2
 _NO_CONTENT = bytes(1)
-"""A sample of the stand-in type."""
+"""In place of a sample where only its key counts, and it has none."""
 _BATCH = 64
-
-
-class _Metadata(ct.Structure):
-    _fields_ = (("data", ct.c_void_p), ("size", ct.c_uint32))
-
-
-class _Descriptor(ct.Structure):
-    """``dds_topic_descriptor_t`` of ddsc/dds_public_impl.h."""
-
-    _fields_ = (
-        ("size", ct.c_uint32),
-        ("alignment", ct.c_uint32),
-        ("flags", ct.c_uint32),
-        ("key_count", ct.c_uint32),
-        ("type_name", ct.c_char_p),
-        ("keys", ct.c_void_p),
-        ("operation_count", ct.c_uint32),
-        ("operations", ct.POINTER(ct.c_uint32)),
-        ("xml", ct.c_char_p),
-        ("type_information", _Metadata),
-        ("type_mapping", _Metadata),
-        ("representations", ct.c_uint32),
-    )
 
 
 class _Vector(ct.Structure):
@@ -61,9 +39,14 @@ class _Vector(ct.Structure):
     _fields_ = (("base", ct.c_char_p), ("length", ct.c_size_t))
 
 
-def _function(name: str, result: Any, *arguments: Any) -> Any:
-    """Return a C function with a prototype of its own: cyclonedds sets others on the library."""
-    return ct.CFUNCTYPE(result, *arguments)((name, _library))
+def _function(name: str, result: Any, *arguments: Any, waits: bool = False) -> Any:
+    """Return a C function with a prototype of its own: cyclonedds sets others on the library.
+
+    Other Python threads run during one that ``waits``; the others are too short for a change of
+    threads, which a busy one would answer late.
+    """
+    prototype = ct.CFUNCTYPE if waits else ct.PYFUNCTYPE
+    return prototype(result, *arguments)((name, _library))
 
 
 _entity = dds_c_t.entity
@@ -71,7 +54,7 @@ _create_topic = _function(
     "dds_create_topic",
     _entity,
     _entity,
-    ct.POINTER(_Descriptor),
+    ct.POINTER(Descriptor),
     ct.c_char_p,
     ct.c_void_p,
     ct.c_void_p,
@@ -86,7 +69,7 @@ _take_cdr = _function(
     ct.c_uint32,
 )
 _sertype_of = _function("dds_get_entity_sertype", ct.c_int32, _entity, ct.POINTER(ct.c_void_p))
-_write_cdr = _function("dds_writecdr", ct.c_int32, _entity, ct.c_void_p)
+_write_cdr = _function("dds_writecdr", ct.c_int32, _entity, ct.c_void_p, waits=True)
 _dispose = _function("dds_dispose", ct.c_int32, _entity, ct.c_char_p)
 _from_bytes = _function(
     "ddsi_serdata_from_ser_iov",
@@ -104,25 +87,22 @@ _to_bytes = _function(
 _release = _function("ddsi_serdata_unref", None, ct.c_void_p)
 
 
-class OpaqueTopic(Topic[Any]):
-    """A DDS topic with a ROS type name and unknown content."""
+class RawTopic(Topic[Any]):
+    """A DDS topic of a ROS type."""
 
     def __init__(self, participant: DomainParticipant, dds_topic: str, type_name: str) -> None:
-        self._name = dds_type_name(type_name).encode("ascii")
-        described = _Descriptor(
-            size=1,
-            alignment=1,
-            flags=_FIXED_SIZE,
-            type_name=self._name,
-            operation_count=2,
-            operations=_OPERATIONS,
-            xml=b"",
-            representations=_XCDR1,
-        )
-        name = dds_topic.encode("ascii")
+        described, name = self.descriptor(type_name), dds_topic.encode("ascii")
         Entity.__init__(self, _create_topic(participant._ref, described, name, None, None))
         self.data_type: Any = None
         self._keepalive_entities = [participant]
+
+    descriptor = staticmethod(descriptor_of)
+
+
+class OpaqueTopic(RawTopic):
+    """A DDS topic with a ROS type name whose samples nobody checks."""
+
+    descriptor = staticmethod(opaque_descriptor)
 
 
 def take(reader: int, limit: int) -> list[RawSample]:
@@ -133,7 +113,7 @@ def take(reader: int, limit: int) -> list[RawSample]:
         data, infos = (ct.c_void_p * batch)(), (dds_c_t.sample_info * batch)()
         count = _take_cdr(reader, data, batch, infos, ANY)
         if count < 0:
-            raise DdsError(f"taking samples failed ({count})")
+            raise DdsError(f"taking samples failed: {strerror(count)}")
         found += [_sample(data[i], infos[i]) for i in range(count)]
         if count < batch:
             break
