@@ -63,11 +63,23 @@ def test_no_address_ends_the_start(capsys: pytest.CaptureFixture[str], domain_id
     assert "interface 'nowhere0' has no IPv4 address after 0 s (there is no such interface" in error
 
 
-def test_an_interface_named_by_hand_must_be_there(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["run", "--interface", "lo0"]) == 2
-    error = capsys.readouterr().err
-    assert "network interface 'lo0' does not exist; this machine has lo" in error
-    assert "did you mean lo?" in error
+@pytest.mark.live
+def test_a_mistyped_interface_is_told_at_once_and_waited_for_up_to_the_limit(
+    domain_id: int,
+) -> None:
+    """A VPN's may come later, also when it is named by hand; who mistyped it can end the wait."""
+    words = ["--domain", str(domain_id), "--interface", "lo0"]
+    words += ["-D", "NET_DHCPV4_INITIAL_DELAY_MAX=1"]
+    command = [sys.executable, "-m", "safety_island", "run", *words]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stderr is not None
+        waiting = next(line for line in process.stderr if "waiting at most 1 s" in line)
+        *_, error = process.stderr
+    for line in (waiting, error):
+        assert "interface 'lo0'" in line and "this machine has " in line
+        assert "did you mean lo?" in line
+    assert error.startswith("island: error: interface 'lo0' has no IPv4 address after 1 s")
+    assert process.returncode == 1
 
 
 def test_a_lying_time_server_ends_the_start(

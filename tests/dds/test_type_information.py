@@ -1,21 +1,34 @@
-"""Matching with peers that announce type information, as recent rmw_cyclonedds does."""
+"""Peers that announce type information: recent rmw_cyclonedds, and CycloneDDS 0.10 in C."""
 
 from __future__ import annotations
 
+import shutil
+import subprocess
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack
+from pathlib import Path
+
 import pytest
 
-from safety_island.dds.qos import DEFAULT, Qos
+from safety_island.dds import topics
+from safety_island.dds.qos import DEFAULT, LATCHED, Qos
 from safety_island.dds.raw_topic import OpaqueTopic
-from safety_island.messages import registry
+from safety_island.messages import codec, registry
 from tests.dds.conftest import NewParticipant
 from tests.dds.dynamic_types import topic_of
 from tests.dds.peer import line, module
 from tests.dds.waiting import wait_for
+from tests.interop.namespace import Running
 
 pytestmark = pytest.mark.live
 BEST_EFFORT = Qos("best_effort")
 MATCHED = "2 2"
 """The peer's own reader and writer, and ours."""
+OLD = {
+    "CYCLONEDDS_URI": '<CycloneDDS><Domain Id="any"><General><AllowMulticast>false</AllowMulticast>'
+    '<Interfaces><NetworkInterface name="lo"/></Interfaces></General><Discovery><Peers>'
+    '<Peer address="127.0.0.1"/></Peers></Discovery></Domain></CycloneDDS>'
+}
 
 
 @pytest.mark.parametrize("opaque", [False, True], ids=["typed", "unknown type"])
@@ -40,3 +53,74 @@ def test_every_type_matches_in_both_directions(
         for publisher, subscription in ends:
             wait_for(publisher.matched)
             wait_for(subscription.matched)
+
+
+@pytest.fixture(scope="module")
+def typed_program(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """Compile the peer and its types with CycloneDDS 0.10."""
+    if not Path("/usr/include/dds/dds.h").exists() or not all(map(shutil.which, ("cc", "idlc"))):
+        pytest.skip("no CycloneDDS in C on this machine (Debian: cyclonedds-dev, cyclonedds-tools)")
+    folder, here = tmp_path_factory.mktemp("typed"), Path(__file__).parent
+    subprocess.run(["idlc", "-l", "c", here / "operation_mode.idl"], cwd=folder, check=True)
+    sources = (here / "typed_peer.c", "operation_mode.c")
+    command = ["cc", "-I.", "-o", "typed_peer", *sources, "-lddsc"]
+    subprocess.run(command, cwd=folder, check=True)
+    return str(folder / "typed_peer")
+
+
+@pytest.fixture
+def typed_peer(typed_program: str, domain_id: int) -> Iterator[Callable[[str], Running]]:
+    """Start the peer, with ROS's name of the type or the one in its .idl file."""
+    with ExitStack() as stack:
+
+        def start(naming: str) -> Running:
+            topic = f"rt{topics.OPERATION_MODE.name}"
+            running = Running([typed_program, str(domain_id), topic, naming], OLD)
+            stack.callback(running.close)
+            return running
+
+        yield start
+
+
+def test_a_typed_program_with_cyclonedds_0_10_lives_and_exchanges_samples(
+    participant: NewParticipant, typed_peer: Callable[[str], Running]
+) -> None:
+    own, entry = participant(), topics.OPERATION_MODE
+    peer = typed_peer("ros")
+    publisher = own.publisher(entry.name, entry.type_name, LATCHED)
+    subscription = own.subscription(entry.name, entry.type_name, LATCHED, ignore_own=True)
+    peer.expect(lambda line: line == "matched 1 1")
+    for mode in range(1, 6):
+        assert publisher.write(_mode(mode))
+        peer.expect(lambda line, wanted=f"received {mode}": line == wanted)
+        sample = wait_for(subscription.take_newest)
+        assert codec.decode(entry.type_name, sample.data)["mode"] == 7
+    assert own.mismatches() == []
+    assert peer.process.poll() is None
+
+
+def test_a_type_under_another_name_does_not_match_and_is_said_to(
+    participant: NewParticipant, typed_peer: Callable[[str], Running]
+) -> None:
+    """Its members are the same; to take its samples, and to warn of it, were two truths."""
+    own, entry = participant(), topics.OPERATION_MODE
+    publisher = own.publisher(entry.name, entry.type_name, LATCHED)
+    subscription = own.subscription(entry.name, entry.type_name, LATCHED, ignore_own=True)
+    other, right = typed_peer("plain"), typed_peer("ros")
+    wait_for(lambda: len(own.publications(entry.name)) == 2)
+    right.expect(lambda line: line == "matched 1 1")
+    assert publisher.write(_mode(3))
+    right.expect(lambda line: line == "received 3")
+    (writer,) = own.writers(entry.name, entry.type_name)
+    for _ in range(5):
+        sample = wait_for(subscription.take_newest)
+        assert sample.writer_guid == writer
+    assert (publisher.matched(), subscription.matched()) == (1, 1)
+    (found, _) = own.mismatches()
+    assert "has type autoware_adapi_v1_msgs::msg::OperationModeState, expected" in found
+    assert other.expect(lambda line: line == "matched 0 0")
+
+
+def _mode(mode: int) -> bytes:
+    name = topics.OPERATION_MODE.type_name
+    return codec.encode(name, {**codec.default(name), "mode": mode})

@@ -20,7 +20,6 @@ from safety_island.cli.stopping import StopAtOnce
 from safety_island.cli.tell import LOST
 from safety_island.control.follower import TrajectoryFollower
 from safety_island.control.records import Records
-from safety_island.dds.network import check_exists
 from safety_island.node import ControllerNode, open_transport
 from safety_island.node.controller import NAME
 from safety_island.params import IslandParameters, notes
@@ -39,9 +38,6 @@ class Run(NamedTuple):
 def run(arguments: argparse.Namespace, start: StopAtOnce) -> None:
     """Start in order and run until told to stop. Raises IslandError when the start fails."""
     settings = run_settings(arguments, chosen(arguments))
-    if arguments.interface is not None and arguments.platform != "sim":
-        # Named by hand, it must be there; one of the configuration may come later (a VPN's).
-        check_exists(arguments.interface)
     parameters = read_parameters(arguments.params, arguments.period).parameters
     with thread_stacks(settings.thread_stack_size), ExitStack() as stack:
         platform = load(arguments.platform, settings.log)

@@ -81,7 +81,8 @@ def test_no_island_is_one_line(domain_id: int, capsys: Capture, more: list[str])
     assert main(words(domain_id, *more, "--timeout", "0.05")) == 1
     assert capsys.readouterr().err == (
         f"island: error: no status came within 0.05 s on {STATUS.name} (domain {domain_id},"
-        " interface lo); start 'island run', or name its --domain and --interface here\n"
+        " interface lo); start 'island run', or name its --domain and --interface here"
+        " ('island env' prints the DDS settings that meet an island)\n"
     )
 
 

@@ -76,7 +76,8 @@ def domain(place: int, qos: Qos | None = None, type_name: str = "", count: int =
 def test_no_publisher_is_said_with_topic_domain_and_interface(place: int) -> None:
     told = why(missing(place), domain=Domain(Found(), WHERE))
     assert f"no publisher is on {INPUTS[place].topic.name} on domain 2, interface lo" in told
-    assert told.endswith("start its publisher or 'island bridge', on this domain and interface.")
+    action = "start its publisher or 'island bridge', on this domain and interface; 'island env' "
+    assert told.endswith(f"{action}prints the settings that a program needs to be found.")
 
 
 @pytest.mark.parametrize("place", PLACES)

@@ -118,6 +118,27 @@ def island_after_dhcp(folder: str) -> None:
     assert "safety_island is live" in said
 
 
+def late_interface() -> None:
+    """An interface named by hand may come after the start: named at once, then waited for."""
+    command = [sys.executable, "-m", "safety_island", "run", "--duration", "0.3"]
+    command += ["--interface", NEAR, "-D", "NET_DHCPV4_INITIAL_DELAY_MAX=60"]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as island:
+        assert island.stderr is not None
+        line = next(line for line in island.stderr if "waiting at most 60 s" in line)
+        assert f"interface '{NEAR}' (there is no such interface; this machine has lo" in line
+        network = cable()
+        ip("address", "add", f"{ADDRESS}", "dev", NEAR)
+        assert network.describe(NEAR) == f"it is down, with address {ADDRESS.ip}"
+        with pytest.raises(NetworkError, match="is not up after 0 s"):
+            network.wait_for_address(NEAR, limit_s=0.0)
+        for end in (FAR, NEAR):
+            ip("link", "set", end, "up")
+        said = island.stderr.read()
+    assert island.returncode == 0, said
+    assert f"interface '{NEAR}' has the IPv4 address {ADDRESS.ip}" in said
+    assert "safety_island is live" in said
+
+
 def no_dhcp() -> None:
     """Nobody answers: the wait ends at its limit, with what was seen."""
     network = cable()

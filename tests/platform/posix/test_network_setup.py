@@ -32,7 +32,7 @@ def test_with_a_dhcp_server(scene: str, tmp_path: Path) -> None:
 
 
 @isolated
-@pytest.mark.parametrize("scene", ["no_dhcp", "static_address", "not_permitted"])
+@pytest.mark.parametrize("scene", ["no_dhcp", "late_interface", "static_address", "not_permitted"])
 def test_without_one(scene: str) -> None:
     call_isolated(SCENES, scene)
 

@@ -15,6 +15,8 @@ from safety_island.node.inputs import INPUTS
 
 _ABOUT_AN_INPUT = (Reason.WAITING_FOR_INPUT, Reason.INPUT_STALE, Reason.MODE_WRITER_GONE)
 
+_SETTINGS = "'island env' prints the settings that a program needs to be found"
+
 
 class Endpoints(Protocol):
     """The endpoints of others on a ROS topic; a Participant."""
@@ -82,7 +84,7 @@ class Domain:
             )
         return Explanation(
             f"no publisher is on {topic} on {self._where}",
-            "start its publisher or 'island bridge', on this domain and interface",
+            f"start its publisher or 'island bridge', on this domain and interface; {_SETTINGS}",
         )
 
     def _no_input(self) -> Explanation | None:
@@ -92,7 +94,8 @@ class Domain:
             return None
         return Explanation(
             f"no publisher of any input is on {self._where}",
-            "start 'island bridge', and look at the network between main compute and island",
+            "start 'island bridge', and look at the network between main compute and island;"
+            f" {_SETTINGS}",
         )
 
 

@@ -94,7 +94,8 @@ class StatusReader:
                 " process and its log"
             )
         return IslandError(
-            f"{looked}; start 'island run', or name its --domain and --interface here"
+            f"{looked}; start 'island run', or name its --domain and --interface here ('island env'"
+            " prints the DDS settings that meet an island)"
         )
 
     def close(self) -> None:

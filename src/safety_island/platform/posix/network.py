@@ -8,6 +8,7 @@ import socket
 import struct
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from difflib import get_close_matches
 from ipaddress import IPv4Address, IPv4Interface
 
 from safety_island.platform.interfaces import Clock, NetworkError
@@ -39,6 +40,12 @@ def _ask(request: int, interface: str) -> bytes | None:
             return fcntl.ioctl(channel.fileno(), request, query)[16:]
     except OSError:
         return None
+
+
+def _flags(interface: str) -> int:
+    """Flags of an interface; those of a good one when the kernel does not say."""
+    answer = _ask(SIOCGIFFLAGS, interface)
+    return IFF_UP | IFF_RUNNING if answer is None else int(struct.unpack_from("=H", answer)[0])
 
 
 @contextmanager
@@ -81,14 +88,14 @@ class PosixNetwork:
         """What the kernel says of the interface."""
         names = [name for _, name in socket.if_nameindex()]
         if interface not in names:
-            return f"there is no such interface; this machine has {', '.join(sorted(names))}"
-        address = self.address(interface)
+            near = get_close_matches(interface, names, n=1)
+            hint = f"; did you mean {near[0]}?" if near else ""
+            return f"there is no such interface; this machine has {', '.join(sorted(names))}{hint}"
+        address, flags = self.address(interface), _flags(interface)
+        if not flags & IFF_UP:
+            return "it is down" if address is None else f"it is down, with address {address}"
         if address is not None:
             return f"it has the IPv4 address {address}"
-        answer = _ask(SIOCGIFFLAGS, interface)
-        flags = struct.unpack_from("=H", answer)[0] if answer is not None else 0
-        if not flags & IFF_UP:
-            return "it is down"
         link = "" if flags & IFF_RUNNING else ", its link is down,"
         return f"it is up{link} and has no IPv4 address"
 
@@ -109,17 +116,18 @@ class PosixNetwork:
     def wait_for_address(
         self, interface: str, limit_s: float, stopped: Callable[[], bool] = _never
     ) -> str | None:
-        """IPv4 address of the interface, as soon as it has one; None when ``stopped()``."""
+        """IPv4 address of the interface, once it has one and is up; None when ``stopped()``."""
         end_ns = self._clock.monotonic_ns() + round(limit_s * 1e9)
         with _announcements() as channels:
             while not stopped():
                 address = self.address(interface)
-                if address is not None:
+                if address is not None and _flags(interface) & IFF_UP:
                     return address
                 left_s = (end_ns - self._clock.monotonic_ns()) * 1e-9
                 if left_s <= 0:
+                    lacking = "has no IPv4 address" if address is None else "is not up"
                     raise NetworkError(
-                        f"interface '{interface}' has no IPv4 address after {limit_s:g} s "
+                        f"interface '{interface}' {lacking} after {limit_s:g} s "
                         f"({self.describe(interface)}): connect it, give it an address, or name "
                         "another interface"
                     )
