@@ -143,9 +143,9 @@ def test_a_packed_log_that_was_cut_is_reported_as_far_as_it_goes(
         (b"\x28\xb5\x2f\xfd and more", "packed by zstd; unpack it first"),
         (b"MDF     4.10", "MDF .MF4. log; convert it"),
         (b"\x1f\x8b", "cut or damaged"),
-        (gzip.compress(b"")[:12], "cut or damaged"),
+        (gzip.compress(b"", mtime=0)[:12], "cut or damaged"),
         (b"\x1f\x8b and no more of it", "cannot be read: "),
-        (gzip.compress(b"\xff\x00\xfe" * 9), "found '.*, expected a line of 'candump"),
+        (gzip.compress(b"\xff\x00\xfe" * 9, mtime=0), "found '.*, expected a line of 'candump"),
     ],
 )
 @pytest.mark.parametrize("suffix", [".log.gz", ".blf", ""])
