@@ -137,7 +137,7 @@ class Network(Protocol):
     """The interfaces of the machine."""
 
     def address(self, interface: str) -> str | None:
-        """IPv4 address of the interface; None when it has none or does not exist."""
+        """IPv4 address of the interface; None when it has none, is down or does not exist."""
 
     def describe(self, interface: str) -> str:
         """What is known of the interface, in a few words for an error message."""

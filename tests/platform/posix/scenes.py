@@ -128,8 +128,7 @@ def late_interface() -> None:
         assert f"interface '{NEAR}' (there is no such interface; this machine has lo" in line
         network = cable()
         ip("address", "add", f"{ADDRESS}", "dev", NEAR)
-        assert network.describe(NEAR) == f"it is down, with address {ADDRESS.ip}"
-        with pytest.raises(NetworkError, match="is not up after 0 s"):
+        with pytest.raises(NetworkError, match="it is down"):
             network.wait_for_address(NEAR, limit_s=0.0)
         for end in (FAR, NEAR):
             ip("link", "set", end, "up")

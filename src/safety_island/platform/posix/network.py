@@ -80,9 +80,11 @@ class PosixNetwork:
         self._clock = clock
 
     def address(self, interface: str) -> str | None:
-        """IPv4 address of the interface; None when it has none or does not exist."""
+        """IPv4 address of the interface; None when it has none, is down or does not exist."""
         answer = _ask(SIOCGIFADDR, interface)
-        return socket.inet_ntoa(answer[4:8]) if answer is not None else None
+        if answer is None or not _flags(interface) & IFF_UP:
+            return None
+        return socket.inet_ntoa(answer[4:8])
 
     def describe(self, interface: str) -> str:
         """What the kernel says of the interface."""
@@ -91,11 +93,12 @@ class PosixNetwork:
             near = get_close_matches(interface, names, n=1)
             hint = f"; did you mean {near[0]}?" if near else ""
             return f"there is no such interface; this machine has {', '.join(sorted(names))}{hint}"
-        address, flags = self.address(interface), _flags(interface)
-        if not flags & IFF_UP:
-            return "it is down" if address is None else f"it is down, with address {address}"
+        address = self.address(interface)
         if address is not None:
             return f"it has the IPv4 address {address}"
+        flags = _flags(interface)
+        if not flags & IFF_UP:
+            return "it is down"
         link = "" if flags & IFF_RUNNING else ", its link is down,"
         return f"it is up{link} and has no IPv4 address"
 
@@ -116,18 +119,17 @@ class PosixNetwork:
     def wait_for_address(
         self, interface: str, limit_s: float, stopped: Callable[[], bool] = _never
     ) -> str | None:
-        """IPv4 address of the interface, once it has one and is up; None when ``stopped()``."""
+        """IPv4 address of the interface, as soon as it has one; None when ``stopped()``."""
         end_ns = self._clock.monotonic_ns() + round(limit_s * 1e9)
         with _announcements() as channels:
             while not stopped():
                 address = self.address(interface)
-                if address is not None and _flags(interface) & IFF_UP:
+                if address is not None:
                     return address
                 left_s = (end_ns - self._clock.monotonic_ns()) * 1e-9
                 if left_s <= 0:
-                    lacking = "has no IPv4 address" if address is None else "is not up"
                     raise NetworkError(
-                        f"interface '{interface}' {lacking} after {limit_s:g} s "
+                        f"interface '{interface}' has no IPv4 address after {limit_s:g} s "
                         f"({self.describe(interface)}): connect it, give it an address, or name "
                         "another interface"
                     )
