@@ -13,6 +13,7 @@ from safety_island.dds import binding, raw_topic
 from safety_island.dds.endpoints import Publisher, Subscription
 from safety_island.dds.errors import DdsError
 from safety_island.dds.qos import DEFAULT
+from safety_island.dds.raw_topic import Room
 from safety_island.messages import inputs
 from safety_island.messages.wire import Time
 from tests.dds.conftest import NewParticipant
@@ -51,14 +52,10 @@ def test_reading_discovery_on_a_dead_entity_is_an_error() -> None:
         binding.take_endpoints(1, 1)
 
 
-def test_data_are_filled_up_to_a_multiple_of_four() -> None:
-    assert [len(binding.filled(bytes(n))) for n in range(4, 10)] == [4, 8, 8, 8, 8, 12]
-
-
 def test_a_writer_is_found_by_its_handle(pair: tuple[Publisher, Subscription]) -> None:
     publisher, subscription = pair
     raw_topic.write(publisher._ref, DATA)
-    (sample,) = raw_topic.take(subscription._ref, 10)
+    (sample,) = raw_topic.take(subscription._ref, 10, Room())
     found = binding.matched_writer(subscription._ref, sample.publication_handle)
     assert found == publisher.guid
     assert binding.matched_writer(subscription._ref, 12345) is None

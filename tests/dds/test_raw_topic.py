@@ -9,11 +9,11 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from safety_island.dds import raw_topic
-from safety_island.dds.binding import RETCODE_BAD_PARAMETER, filled
+from safety_island.dds.binding import RETCODE_BAD_PARAMETER
 from safety_island.dds.endpoints import Publisher, Subscription
 from safety_island.dds.errors import DdsError
 from safety_island.dds.qos import DEFAULT
-from safety_island.dds.raw_topic import OpaqueTopic
+from safety_island.dds.raw_topic import OpaqueTopic, Room, filled
 from safety_island.messages import codec, inputs, registry
 from safety_island.messages.wire import Time
 from tests.dds.conftest import NewParticipant
@@ -37,9 +37,9 @@ def pair(participant: NewParticipant) -> tuple[Publisher, Subscription]:
 
 def test_a_sample_comes_with_its_writer_and_its_time(pair: tuple[Publisher, Subscription]) -> None:
     publisher, subscription = pair
-    assert raw_topic.take(subscription._ref, 10) == []
+    assert raw_topic.take(subscription._ref, 10, Room()) == []
     assert raw_topic.write(publisher._ref, DATA) == 0
-    (sample,) = raw_topic.take(subscription._ref, 10)
+    (sample,) = raw_topic.take(subscription._ref, 10, Room())
     assert type(sample.data) is bytes and sample.data == DATA
     assert sample.valid is True and sample.is_alive
     assert sample.source_timestamp_ns > 1e18
@@ -52,15 +52,21 @@ def test_more_samples_than_a_batch_come_in_order(participant: NewParticipant) ->
     subscription = own.subscription(TOPIC, inputs.STEERING, DEFAULT.with_depth(256))
     sent = [inputs.encode_steering(inputs.Steering(Time(n, 0), 0.5)) for n in range(200)]
     assert all(publisher.write(data) for data in sent)
-    limited = raw_topic.take(subscription._ref, 70)
-    assert [sample.data for sample in (*limited, *raw_topic.take(subscription._ref, 999))] == sent
+    room = Room()
+    limited = raw_topic.take(subscription._ref, 70, room)
+    rest = raw_topic.take(subscription._ref, 999, room)
+    assert [sample.data for sample in limited + rest] == sent
     assert len(limited) == 70
+
+
+def test_data_are_filled_up_to_a_multiple_of_four() -> None:
+    assert [len(filled(bytes(n))) for n in range(4, 10)] == [4, 8, 8, 8, 8, 12]
 
 
 def test_a_dead_entity_is_an_error() -> None:
     assert raw_topic.write(1, DATA) < 0
     with pytest.raises(DdsError, match=r"taking samples failed: "):
-        raw_topic.take(1, 1)
+        raw_topic.take(1, 1, Room())
 
 
 @pytest.mark.parametrize("size", range(4))

@@ -1,4 +1,4 @@
-"""The only place that touches the private C layer of cyclonedds: raw samples in and out.
+"""The only place that touches the private C layer of cyclonedds: what discovery found.
 
 ``cyclonedds._clayer`` is not an API: it may change with any release. Hence the exact pin, and
 ``tests/dds/test_binding.py``, which fails when what is used here behaves differently.
@@ -17,8 +17,6 @@ from safety_island.dds.errors import DdsError
 
 PINNED_VERSION = "11.0.1"
 ANY = SampleState.Any | ViewState.Any | InstanceState.Any
-MINIMUM_WRITE = 4
-"""The C layer reads a header of this many bytes without looking whether it is there."""
 
 _convert_qos: Any = cqos_to_qos
 
@@ -75,12 +73,6 @@ def check_version() -> None:
             f"found cyclonedds {found}, expected exactly {PINNED_VERSION};"
             f" run: pip install cyclonedds=={PINNED_VERSION}"
         )
-
-
-def filled(data: bytes) -> bytes:
-    """Return the data with zeros behind, up to a multiple of four bytes."""
-    surplus = len(data) & 3
-    return data + bytes(4 - surplus) if surplus else data
 
 
 def matched_writer(reader: int, handle: int) -> bytes | None:

@@ -110,6 +110,7 @@ class Subscription:
         wanted = cyclone_qos(qos, type_hash_data(type_name), writer=False, ignore_own=ignore_own)
         self._filter = WriterFilter(topic._ref)
         self._topic = topic
+        self._room = raw_topic.Room()
         self._new_reader = partial(_create, DataReader, participant, topic, wanted)
         self._on_close, self._on_change = on_close, on_change
         self._open()
@@ -161,7 +162,7 @@ class Subscription:
     def take_raw(self) -> list[binding.RawSample]:
         """Return all samples and notices since the last call, oldest first."""
         taken: list[binding.RawSample] = []
-        while len(batch := raw_topic.take(self._ref, _BATCH)) == _BATCH:
+        while len(batch := raw_topic.take(self._ref, _BATCH, self._room)) == _BATCH:
             taken += batch
         return taken + batch
 
@@ -177,7 +178,7 @@ class Subscription:
 
     def _take(self) -> list[binding.RawSample]:
         samples: list[binding.RawSample] = []
-        taken = raw_topic.take(self._ref, _BATCH)
+        taken = raw_topic.take(self._ref, _BATCH, self._room)
         samples += [raw for raw in taken if raw.valid]
         self.invalid += len(taken) - len(samples)
         self.received += len(samples)

@@ -15,14 +15,7 @@ from cyclonedds.domain import DomainParticipant
 from cyclonedds.internal import DDS, dds_c_t
 from cyclonedds.topic import Topic
 
-from safety_island.dds.binding import (
-    ANY,
-    MINIMUM_WRITE,
-    RETCODE_BAD_PARAMETER,
-    RawSample,
-    filled,
-    strerror,
-)
+from safety_island.dds.binding import ANY, RETCODE_BAD_PARAMETER, RawSample, strerror
 from safety_island.dds.errors import DdsError
 from safety_island.dds.types import Descriptor, descriptor_of, opaque_descriptor
 
@@ -31,6 +24,8 @@ _DATA = 2
 _NO_CONTENT = bytes(1)
 """In place of a sample where only its key counts, and it has none."""
 _BATCH = 64
+_MINIMUM_WRITE = 4
+"""The C layer reads a header of this many bytes without looking whether it is there."""
 
 
 class _Vector(ct.Structure):
@@ -105,12 +100,20 @@ class OpaqueTopic(RawTopic):
     descriptor = staticmethod(opaque_descriptor)
 
 
-def take(reader: int, limit: int) -> list[RawSample]:
+class Room:
+    """Where the library puts the samples of one reader, used again each time."""
+
+    def __init__(self) -> None:
+        self.data = (ct.c_void_p * _BATCH)()
+        self.infos = (dds_c_t.sample_info * _BATCH)()
+
+
+def take(reader: int, limit: int, room: Room) -> list[RawSample]:
     """Take up to ``limit`` samples, oldest first; DdsError with the library's return code."""
     found: list[RawSample] = []
+    data, infos = room.data, room.infos
     while len(found) < limit:
         batch = min(_BATCH, limit - len(found))
-        data, infos = (ct.c_void_p * batch)(), (dds_c_t.sample_info * batch)()
         count = _take_cdr(reader, data, batch, infos, ANY)
         if count < 0:
             raise DdsError(f"taking samples failed: {strerror(count)}")
@@ -122,7 +125,7 @@ def take(reader: int, limit: int) -> list[RawSample]:
 
 def write(writer: int, data: bytes) -> int:
     """Write serialized CDR (header included) and return 0 or a negative return code."""
-    if len(data) < MINIMUM_WRITE:
+    if len(data) < _MINIMUM_WRITE:
         return RETCODE_BAD_PARAMETER
     data = filled(data)
     sertype = ct.c_void_p()
@@ -141,6 +144,12 @@ def dispose(writer: int) -> int:
     """Dispose what a writer of a topic without key has sent; 0 or a negative return code."""
     code: int = _dispose(writer, _NO_CONTENT)
     return code
+
+
+def filled(data: bytes) -> bytes:
+    """Return the data with zeros behind, up to a multiple of four bytes."""
+    surplus = len(data) & 3
+    return data + bytes(4 - surplus) if surplus else data
 
 
 def _sample(data: int | None, info: Any) -> RawSample:
