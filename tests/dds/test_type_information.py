@@ -7,13 +7,16 @@ import subprocess
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from pathlib import Path
+from typing import Any
 
 import pytest
+from cyclonedds.builtin import BuiltinDataReader
 
 from safety_island.dds import topics
+from safety_island.dds.discovery import PUBLICATIONS, SUBSCRIPTIONS
 from safety_island.dds.qos import DEFAULT, LATCHED, Qos
 from safety_island.dds.raw_topic import OpaqueTopic
-from safety_island.messages import codec, registry
+from safety_island.messages import codec, inputs, registry
 from tests.dds.conftest import NewParticipant
 from tests.dds.dynamic_types import topic_of
 from tests.dds.peer import line, module
@@ -124,3 +127,20 @@ def test_a_type_under_another_name_does_not_match_and_is_said_to(
 def _mode(mode: int) -> bytes:
     name = topics.OPERATION_MODE.type_name
     return codec.encode(name, {**codec.default(name), "mode": mode})
+
+
+def test_no_endpoint_announces_type_information(participant: NewParticipant) -> None:
+    own, other = participant(), participant()
+    publisher = own.publisher("/a", inputs.OPERATION_MODE)
+    subscription = own.subscription("/a", inputs.OPERATION_MODE)
+    for kind, guid in ((PUBLICATIONS, publisher.guid), (SUBSCRIPTIONS, subscription.guid)):
+        reader = BuiltinDataReader(other._participant, kind)
+        known: dict[bytes, Any] = {}
+
+        def is_found(reader: Any = reader, known: Any = known, guid: bytes = guid) -> bool:
+            known.update({sample.key.bytes: sample for sample in reader.read(256)})
+            return guid in known
+
+        wait_for(is_found)
+        announced = [found for found in known.values() if found.participant_key.bytes == own.guid]
+        assert announced and all(found.type_id is None for found in announced)
