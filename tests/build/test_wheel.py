@@ -359,13 +359,16 @@ def test_osqp_works_from_the_library_with_its_extra_alone(
 
 
 @pytest.mark.slow
-def test_a_target_is_built_where_a_wheel_is_installed(
-    plain: Installation, posix_build: Path
+@pytest.mark.parametrize("kind", ["plain_wheel", "platform_wheel"])
+def test_a_target_is_built_where_a_wheel_is_installed_with_a_compiler(
+    kind: str, posix_build: Path, tmp_path: Path, request: pytest.FixtureRequest
 ) -> None:
     """``posix_build`` has compiled the kernels already."""
-    result = plain.run("build", "-t", "posix", timeout=600)
+    wheel: Path = request.getfixturevalue(kind)
+    installation = Installation(wheel, tmp_path, ("compile",))
+    result = installation.run("build", "-t", "posix", timeout=600)
     assert result.returncode == 0, result.stderr
-    folder = plain.home / "build" / "posix"
+    folder = installation.home / "build" / "posix"
     assert (folder / LIBRARY_NAME).read_bytes() == (posix_build / LIBRARY_NAME).read_bytes()
     assert (folder / "safety-island.pyz").exists()
     shutil.rmtree(folder)

@@ -27,6 +27,7 @@ ENVIRONMENT = {
     "NUMBA_CPU_FEATURES": "",
     "NUMBA_OPT": "0",  # optimised later, for the machine
     "PYTHONHASHSEED": "0",  # the same sources give the same bytes
+    "SAFETY_ISLAND_JIT": "1",  # an installed platform wheel has a library already
 }
 COMPILER = ["-m", kernel_ir.__name__]
 """What Python runs to compile."""
