@@ -360,7 +360,9 @@ def test_a_blf_log_with_damaged_bytes_does_no_harm(tmp_path: Path) -> None:
 
 
 def test_standard_input_that_is_no_text(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(b"\xff\xfe\n"), "utf-8"))
+    monkeypatch.setattr(
+        "sys.stdin", io.TextIOWrapper(io.BufferedReader(io.BytesIO(b"\xff\xfe\n")), "utf-8")
+    )
     with pytest.raises(LogError, match=r"^standard input:1: found '.*', expected a line of"):
         list(read_log("-"))
 
