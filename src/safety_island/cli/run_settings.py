@@ -24,6 +24,22 @@ IN_MEMORY = ("mock", "virtual")
 """CAN backends without a wire: what virtual time can use."""
 
 
+_NO_NETWORK, _OWN_VEHICLE = "keeps its topics in memory", "drives the vehicle that its inputs show"
+_IDLE: dict[str, dict[str, str]] = {
+    "sim": {
+        "--domain": _NO_NETWORK,
+        "--interface": _NO_NETWORK,
+        "--peer": _NO_NETWORK,
+        "--domain-tag": _NO_NETWORK,
+        "--sntp": "has virtual time and asks no server",
+        "--realtime": "has virtual time",
+        "--cpu": "has virtual time",
+    },
+    "posix": {"--course": _OWN_VEHICLE, "--path": _OWN_VEHICLE},
+}
+"""Options that do nothing on a platform, and why."""
+
+
 @dataclass(frozen=True)
 class RunSettings:
     """The settings of one run; times in seconds, the stack in bytes."""
@@ -48,9 +64,8 @@ def run_settings(arguments: argparse.Namespace, config: RunConfiguration) -> Run
     Raises ConfigurationError for options that contradict each other or the machine.
     """
     is_virtual = arguments.platform == "sim"
+    _refuse_idle(arguments)
     mode, bus = _output(arguments, config, is_virtual)
-    if is_virtual and arguments.sntp is not None:
-        raise ConfigurationError("--sntp: virtual time (--platform sim) asks no server; drop one")
     interface = None if is_virtual else _interface(arguments.interface, config)
     return RunSettings(
         target=config.target,
@@ -65,6 +80,23 @@ def run_settings(arguments: argparse.Namespace, config: RunConfiguration) -> Run
         log=LogConfig(LogLevel(config.log_level), config.log_throttle_s, arguments.log_json),
         thread_stack_size=config.thread_stack_size,
     )
+
+
+def _refuse_idle(arguments: argparse.Namespace) -> None:
+    """Raise ConfigurationError for an option that would do nothing."""
+    idle = _IDLE[arguments.platform]
+    for option, why in idle.items():
+        value = getattr(arguments, option.lstrip("-").replace("-", "_"))
+        if value not in (None, [], "auto"):
+            raise ConfigurationError(
+                f"{option}: --platform {arguments.platform} {why}; drop one of the two options"
+            )
+    if arguments.course is not None and arguments.path is not None:
+        raise ConfigurationError("--course and --path: one vehicle drives one of them; drop one")
+    if arguments.realtime == "off" and arguments.cpu != "auto":
+        raise ConfigurationError(
+            "--cpu: with --realtime off no core is chosen; drop one of the two options"
+        )
 
 
 def _output(
