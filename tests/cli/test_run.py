@@ -74,7 +74,7 @@ def test_report_counts() -> None:
     assert summary["missed_ticks"] == 2
     assert summary["refused_samples"] == 3
     assert summary["first_control_s"] == 1.25
-    times = summary["tick_s"]
+    times = summary["tick_times_s"]
     assert times["max"] == times["p99"] == 0.004
     assert 0.002 <= times["median"] <= 0.002 * 1.01
 
@@ -84,11 +84,11 @@ def test_values_of_a_tick() -> None:
     values = tick_values(tick(), trace, AGES)
     assert values["outcome"] == "PUBLISHED"
     assert values["steering_tire_angle"] == 0.1
-    assert values["state"] == "DRIVE"
+    assert values["longitudinal_state"] == "DRIVE"
     assert values["ages_s"] == AGES
     waiting = tick_values(tick(Outcome.WAITING_FOR_INPUT), trace, AGES)
     assert waiting["detail"] == "odometry"
-    assert "state" not in waiting
+    assert "longitudinal_state" not in waiting
 
 
 def test_ages_count_from_the_sending() -> None:
