@@ -35,7 +35,7 @@ def test_the_file_for_two_machines_lets_the_island_drive(machine: Machine, tmp_p
 
     def drives(line: str) -> bool:
         tick = json.loads(line)
-        return tick.get("state") == "ACTIVE" and tick.get("acceleration", 0.0) > 0.0
+        return bool(tick.get("state") == "ACTIVE" and tick.get("acceleration", 0.0) > 0.0)
 
     assert run.expect(drives, timeout_s=90.0)
 

@@ -20,7 +20,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         """
 Stand in for Autoware: publish a trajectory at 10 Hz, and odometry, acceleration and steering of a
 simulated vehicle at 40 Hz; drive it by the control commands that come back. Autonomous mode is
-engaged when commands come. When they stop coming the vehicle brakes, as Autoware's gate would.
+engaged when commands come. When they stop coming the vehicle brakes, as Autoware would see to.
 """,
         ("island main-compute", "the s-curve on domain 1, once"),
         ("island main-compute --course slalom --repeat", "another course, lap after lap"),
