@@ -13,7 +13,7 @@ from pathlib import Path
 from safety_island.build.configuration import InterfaceConfiguration, RunConfiguration
 from safety_island.can.mode import TARGET_OUTPUT, OutputMode
 from safety_island.can.spec import BusSpec, parse_spec
-from safety_island.cli.options import peers_and_tags
+from safety_island.cli.options import check_realtime, peers_and_tags
 from safety_island.dds.config import URI, DdsConfig, user_xml
 from safety_island.errors import ConfigurationError
 from safety_island.platform import LogConfig, LogLevel
@@ -93,10 +93,7 @@ def _refuse_idle(arguments: argparse.Namespace) -> None:
             )
     if arguments.course is not None and arguments.path is not None:
         raise ConfigurationError("--course and --path: one vehicle drives one of them; drop one")
-    if arguments.realtime == "off" and arguments.cpu != "auto":
-        raise ConfigurationError(
-            "--cpu: with --realtime off no core is chosen; drop one of the two options"
-        )
+    check_realtime(arguments)
 
 
 def _output(
