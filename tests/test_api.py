@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The Python interface: cheap to import, as the README shows it, and the same as the commands."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The Python interface: ``from safety_island import ...`` for people who script.
 
 Controllers and simulation, without network, threads or clock: parameters in, a path in, commands

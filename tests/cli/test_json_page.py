@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """docs/json.md is what the tables say, and the tables are what the commands write."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the pages show is there: commands with their options, Python examples, links."""
 
 from __future__ import annotations

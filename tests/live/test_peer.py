@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``demo/peer.py``: a program with the public CycloneDDS package alone drives with the island."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """docs/autoware.md as written: the DDS file for two machines, the bridge file of newer names."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A path of the user's own becomes a course, or an error in one line."""
 
 from __future__ import annotations

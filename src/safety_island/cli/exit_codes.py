@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the exit code of ``island`` says, for its help and docs/json.md."""
 
 from __future__ import annotations

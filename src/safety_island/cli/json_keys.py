@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every key of the JSON lines that the long-running commands print: its type and its one meaning.
 
 Within a command, a key means the same in each event. docs/json.md is made from this table, and a

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Writes docs/json.md from its tables: ``python -m safety_island.cli.json_page``."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A main compute with the public Python package of CycloneDDS, and nothing of the island's.
 
 Publishes the island's five inputs (a straight road, a vehicle on it, the operation mode) and prints

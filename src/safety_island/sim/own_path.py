@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A course from a path of the user's own: points from arrays, or from a CSV or YAML file."""
 
 from __future__ import annotations
