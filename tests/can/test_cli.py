@@ -13,6 +13,7 @@ from pathlib import Path
 import can
 import pytest
 
+from safety_island import __version__
 from safety_island.can.candump import LogEntry, format_line
 from safety_island.can.dbc import dbc_text
 from safety_island.cli.main import main
@@ -289,7 +290,9 @@ def test_monitor_watches_a_live_bus(form: list[str], capsys: Capture) -> None:
     assert found == 0
     out = capsys.readouterr().out
     if form:
-        state = json.loads(out.splitlines()[-1])
+        lines = [json.loads(line) for line in out.splitlines()]
+        first, state = lines[0], lines[-1]
+        assert first["version"] == __version__
         assert state["commands"]["count"] > 1
         assert state["commands"]["age_s"] < 60
         assert abs(state["latest"]["lag_ms"]) < 60_000

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 
 import pytest
 
+from safety_island import __version__
 from safety_island.cli.jsonlines import MAX_LINE, JsonLines, plain
 
 Pipe = tuple[int, int]
@@ -30,7 +31,8 @@ def test_one_object_a_line(pipe: Pipe) -> None:
     lines.write("tick", {"number": 1, "ages_s": {"odometry": 0.1234567}})
     lines.write("end", {})
     first, second = os.read(pipe[0], 1000).decode().splitlines()
-    assert json.loads(first) == {"event": "tick", "number": 1, "ages_s": {"odometry": 0.123457}}
+    values = {"number": 1, "ages_s": {"odometry": 0.123457}}
+    assert json.loads(first) == {"event": "tick", "version": __version__, **values}
     assert json.loads(second) == {"event": "end"}
     os.close(pipe[0])
 

@@ -7,6 +7,7 @@ import argparse
 import pytest
 
 from safety_island.cli import options
+from safety_island.cli.main import main
 from safety_island.cli.parser import Parser, UsageError
 
 
@@ -53,3 +54,18 @@ def test_refused(parser: Parser, option: str, value: str) -> None:
         UsageError, match=f"argument {option}: '{value}' is not a .*island x --help"
     ):
         parser.parse([f"{option}={value}"])
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["bridge", "--realtime", "off", "--cpu", "1"], "--cpu: with --realtime off no core"),
+        (["main-compute", "--repeat", "--within", "30"], "--within: --repeat drives without end"),
+    ],
+)
+def test_an_option_that_would_do_nothing_is_refused(
+    words: list[str], told: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(words) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert told in line

@@ -116,6 +116,7 @@ def test_every_run_gets_its_csv_also_one_that_fails(
 ) -> None:
     tampered(folder / "bend" / "two.npz")
     assert main(["replay", str(folder), "--csv", str(tmp_path / "out")]) == 1
+    assert f"island: made the folder {tmp_path / 'out'}" in capsys.readouterr().err
     names = sorted(path.name for path in (tmp_path / "out").iterdir())
     assert names == ["bend__one.csv", "bend__two.csv"]
     first, second = ((tmp_path / "out" / name).read_text() for name in names)
@@ -156,3 +157,12 @@ def test_a_csv_folder_that_cannot_be_written(folder: Path, tmp_path: Path, capsy
     (tmp_path / "file").write_text("")
     assert main(["replay", str(folder), "--csv", str(tmp_path / "file")]) == 1
     assert "cannot be written" in capsys.readouterr().err
+
+
+def test_no_folder_is_made_around_that_of_the_csv(
+    folder: Path, tmp_path: Path, capsys: Capture
+) -> None:
+    assert main(["replay", str(folder), "--csv", str(tmp_path / "wrong" / "out")]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "cannot be made: No such file or directory" in line
+    assert not (tmp_path / "wrong").exists()

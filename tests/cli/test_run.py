@@ -8,6 +8,7 @@ import re
 import signal
 import subprocess
 import sys
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -73,7 +74,7 @@ def test_report_counts() -> None:
     assert summary["missed_ticks"] == 2
     assert summary["refused_samples"] == 3
     assert summary["first_control_s"] == 1.25
-    times = summary["tick_s"]
+    times = summary["tick_times_s"]
     assert times["max"] == times["p99"] == 0.004
     assert 0.002 <= times["median"] <= 0.002 * 1.01
 
@@ -83,11 +84,11 @@ def test_values_of_a_tick() -> None:
     values = tick_values(tick(), trace, AGES)
     assert values["outcome"] == "PUBLISHED"
     assert values["steering_tire_angle"] == 0.1
-    assert values["state"] == "DRIVE"
+    assert values["longitudinal_state"] == "DRIVE"
     assert values["ages_s"] == AGES
     waiting = tick_values(tick(Outcome.WAITING_FOR_INPUT), trace, AGES)
     assert waiting["detail"] == "odometry"
-    assert "state" not in waiting
+    assert "longitudinal_state" not in waiting
 
 
 def test_ages_count_from_the_sending() -> None:
@@ -134,8 +135,9 @@ def test_ends_after_its_duration_and_says_what_it_waits_for(domain_id: int) -> N
     command = [*RUN, "--domain", str(domain_id), "--duration", "0.5"]
     process = subprocess.run(command, capture_output=True, text=True, timeout=300)
     assert (process.returncode, process.stdout) == (0, "")
-    for name in (spec.name for spec in INPUTS):
-        assert f"Waiting for {name} data" in process.stderr
+    names = ", ".join(f"{spec.name} data" for spec in INPUTS)
+    (line,) = [line for line in process.stderr.splitlines() if "Waiting for" in line]
+    assert line.endswith(f" Waiting for {names} on domain {domain_id} (lo)")
     assert re.search(r" \d+ ticks, 0 commands", process.stderr)
 
 
@@ -153,3 +155,45 @@ def test_virtual_drive_is_the_same_every_time() -> None:
 def _ticks(text: str) -> list[dict[str, Any]]:
     events = [json.loads(line) for line in text.splitlines()]
     return [event for event in events if event["event"] == "tick"]
+
+
+def summary_of(*words: str) -> dict[str, Any]:
+    """Drive in virtual time; return what the vehicle's summary says."""
+    done = subprocess.run(
+        [*RUN, "--platform", "sim", "--json", *words], capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
+    events = [json.loads(line) for line in done.stdout.splitlines()]
+    vehicle: dict[str, Any] = next(event for event in events if event["event"] == "vehicle")
+    assert vehicle["finished"] and vehicle["on_course"] and vehicle["stopped_in_place"]
+    return vehicle
+
+
+def test_virtual_time_drives_the_course_that_is_named() -> None:
+    assert len(summary_of("--course", "stop-and-go")["stop_errors"]) > 1
+
+
+def test_virtual_time_drives_a_path_of_the_users_own(tmp_path: Path) -> None:
+    rows = [f"{x},{0.002 * x * x},{4.0 if x < 40 else 6.0}" for x in range(0, 81, 4)]
+    (tmp_path / "path.csv").write_text("\n".join(["x,y,v", *rows]))
+    vehicle = summary_of("--path", str(tmp_path / "path.csv"))
+    assert 5.7 < vehicle["top_speed"] < 6.5
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["--platform", "sim", "--path", "none.csv"], "none.csv: cannot be read"),
+        (
+            ["--platform", "sim", "--course", "nosuch"],
+            "unknown course 'nosuch'; there are: s-curve",
+        ),
+        (["--course", "slalom"], "--course: --platform posix drives"),
+    ],
+)
+def test_a_course_that_cannot_be_is_one_line(
+    words: list[str], told: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["run", *words]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert told in line

@@ -109,7 +109,8 @@ def test_ticks_show_the_frames_decoded(tmp_path: Path) -> None:
         for name in ("velocity", "acceleration"):
             assert can[name]["value"] == pytest.approx(event[name], abs=0.51e-3)
     (summary,) = [event for event in found if event["event"] == "summary"]
-    assert (summary["can"]["mode"], summary["can"]["sent"]) == ("DDS_AND_CAN", len(sent))
+    counts = summary["can_counts"]
+    assert (counts["output_mode"], counts["sent"]) == ("DDS_AND_CAN", len(sent))
     assert len(frames_of(log)) == len(sent)
     assert "output mode DDS_AND_CAN on mock" in said
 
@@ -126,7 +127,7 @@ def test_without_json_frames_are_logged_now_and_then() -> None:
 def test_dds_alone_reports_nothing_of_can() -> None:
     found, _ = events()
     assert not any("can" in event for event in found if event["event"] == "tick")
-    assert next(event for event in found if event["event"] == "summary")["can"] is None
+    assert next(event for event in found if event["event"] == "summary")["can_counts"] is None
 
 
 def test_can_only_publishes_no_command() -> None:

@@ -14,7 +14,7 @@ from safety_island.errors import ConfigurationError
 
 pytestmark = pytest.mark.live
 
-WAITING = "Waiting for odometry data"
+WAITING = "Waiting for trajectory data, odometry data, "
 LIBRARY = "config: Domain/General"
 """How CycloneDDS tells its configuration."""
 

@@ -103,6 +103,22 @@ def test_can_bus_without_a_name() -> None:
         (["--can-log", "x.log"], "--can-log x.log: output mode DDS_ONLY"),
         (["--platform", "sim", "--sntp", "a"], "asks no server"),
         (["--platform", "sim", "--can", "socketcan:can0"], "no real bus, expected --can mock"),
+        *(
+            (["--platform", "sim", *words], f"{words[0]}: --platform sim")
+            for words in (
+                ["--domain", "3"],
+                ["--interface", "lo"],
+                ["--peer", "10.0.0.2"],
+                ["--domain-tag", "a"],
+                ["--realtime", "off"],
+                ["--realtime", "require"],
+                ["--cpu", "1"],
+            )
+        ),
+        (["--course", "slalom"], "--course: --platform posix drives"),
+        (["--path", "a.csv"], "--path: --platform posix drives"),
+        (["--platform", "sim", "--course", "hill", "--path", "a"], "--course and --path"),
+        (["--realtime", "off", "--cpu", "1"], "no core is chosen"),
         (["-t", "nosuch"], "unknown target 'nosuch'"),
     ],
 )

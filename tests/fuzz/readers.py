@@ -27,6 +27,7 @@ from safety_island.dds.config import URI, DdsConfig
 from safety_island.errors import IslandError
 from safety_island.messages.idl import parse_idl
 from safety_island.params.sets import FILES, sources_of
+from safety_island.sim.own_path import read_course
 from tests.can.rig import triple
 from tests.fuzz.mutations import Change, mutated, mutated_member
 from tests.replay.runs import arrays_of
@@ -182,8 +183,19 @@ def _recordings() -> list[bytes]:
     return found
 
 
+def _paths() -> list[bytes]:
+    rows = [f"{0.7 * i},{0.01 * i * i},{i % 9 + 1}" for i in range(40)]
+    return ["\n".join(["x,y,v", *rows]).encode(), b"0,0,0,3\n20,1,0,4\n40,1,0,0\n"]
+
+
+def _yaml_paths() -> list[bytes]:
+    return [b"x: [0, 9.5, 20]\ny: [0, 0.25, 1]\nyaw: [0, 0.05, 0.1]\nv: [3, 0, 4]\n"]
+
+
 READERS = (
     Reader("bridge", ".yaml", _bridge_files, call(_bridge)),
+    Reader("path", ".csv", _paths, call(read_course)),
+    Reader("path-yaml", ".yaml", _yaml_paths, call(read_course)),
     Reader("parameters", ".yaml", _parameter_files, command("params", "check")),
     Reader(
         "kconfig-fragment",

@@ -77,12 +77,12 @@ class TestMissingInput:
         rig.trajectory(ROWS)
         assert rig.tick().published
 
-    def test_each_name_is_logged_once_in_three_seconds(self, rig: Rig) -> None:
+    def test_all_that_is_waited_for_is_one_line_in_three_seconds(self, rig: Rig) -> None:
         for _ in range(41):  # 6.15 s
             rig.tick()
         texts = [line.split("] ")[-1].strip() for line in rig.lines]
-        names = ["trajectory", "odometry", "steering", "acceleration", "operation mode"]
-        assert texts == [f"Waiting for {name} data" for name in names] * 3
+        every = "trajectory data, odometry data, steering data, acceleration data, "
+        assert texts == [f"Waiting for {every}operation mode data"] * 3
 
     def test_what_was_always_refused_is_missing(self, rig: Rig, follower: FakeFollower) -> None:
         follower.refusal = Refusal.NOT_FINITE

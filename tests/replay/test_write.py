@@ -25,8 +25,8 @@ def test_the_file_holds_what_was_replayed_to_the_last_bit(tmp_path: Path) -> Non
     arrays["traj_select"][:2, 0] = -1
     run = load(write(tmp_path / "bend" / "ctrl0.15_fast.npz", **arrays))
     columns = replay(run)
-    path = write_csv(tmp_path / "deep" / "er", run, columns)
-    assert path == tmp_path / "deep" / "er" / "bend__ctrl0.15_fast.csv"
+    path = write_csv(tmp_path, run, columns)
+    assert path == tmp_path / "bend__ctrl0.15_fast.csv"
     header, *lines = path.read_text().splitlines()
     assert header == HEADER == ",".join((*CONTRACT_COLUMNS, *GUARD_COLUMNS))
     assert len(lines) == TICKS

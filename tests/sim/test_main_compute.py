@@ -97,7 +97,7 @@ def test_publishes_all_inputs_of_the_island(neighbour: Neighbour) -> None:
 def test_rates(neighbour: Neighbour) -> None:
     """Four samples of each vehicle topic come with each trajectory."""
     with neighbour.stand_in():
-        wait_for(lambda: neighbour.status("mode") == "STOP")
+        wait_for(lambda: neighbour.status("operation_mode") == "STOP")
         received = neighbour.inputs["trajectory"]
         wait_for(lambda: received.take_newest() and received.received > 10)
         neighbour.inputs["odometry"].take_newest()
@@ -140,8 +140,8 @@ def test_what_is_no_command_does_not_drive(neighbour: Neighbour) -> None:
         wait_for(lambda: neighbour.control.matched())
         for _ in range(5):
             neighbour.command(float("nan"))
-        wait_for(lambda: neighbour.status("mode") == "STOP")
-    assert neighbour.events[-1][1]["refused"] > 0
+        wait_for(lambda: neighbour.status("operation_mode") == "STOP")
+    assert neighbour.events[-1][1]["refused_commands"] > 0
     assert neighbour.events[-1][1]["commands"] == 0
 
 

@@ -131,7 +131,7 @@ class Bridge:
         rows = [asdict(link.counts) for link in self.links]
         sums = {name: sum(row[name] for row in rows) for name in asdict(Counts())}
         opened = sum(link.is_open for link in self.links)
-        return {**sums, "open": opened, "routes": len(self.links)}
+        return {**sums, "routes_open": opened, "routes": len(self.links)}
 
     def close(self) -> None:
         """Leave every domain. A second call does nothing."""

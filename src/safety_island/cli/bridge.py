@@ -87,6 +87,7 @@ def _add_switch(parser: argparse.ArgumentParser, name: str, default: str, what: 
 
 def execute(arguments: argparse.Namespace) -> int:
     """Forward until told to stop."""
+    options.check_realtime(arguments)
     with StopAtOnce() as start:
         from safety_island.bridge import BridgeOptions, run
         from safety_island.bridge.link import WaitFor

@@ -6,14 +6,16 @@ import argparse
 import json
 import math
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from itertools import chain, repeat
 from typing import Any, Protocol
 
 from safety_island.can.candump import LogEntry
 from safety_island.can.monitor import RECENT, BusMonitor
 from safety_island.can.receiver import Link
 from safety_island.can.report import command_text, command_values, summary_lines, summary_values
+from safety_island.cli.jsonlines import HEAD
 from safety_island.cli.options import add_duration, add_json, period_s
 from safety_island.cli.parser import UsageError
 from safety_island.cli.stopping import StopFlag
@@ -143,10 +145,20 @@ def _feed(
     return int(monitor.losses.link(now_ns / _NS_PER_S) is Link.LOST)
 
 
+def _json_lines() -> _Display:
+    """Print one JSON object each time; the first says which version wrote it."""
+    heads: Iterator[Mapping[str, object]] = chain([HEAD], repeat({}))
+
+    def show(monitor: BusMonitor, now_s: float) -> None:
+        print(json.dumps({**next(heads), **summary_values(monitor, now_s)}), flush=True)
+
+    return show
+
+
 @contextmanager
 def _display(arguments: argparse.Namespace) -> Iterator[_Display]:
     if arguments.json:
-        yield lambda monitor, now_s: print(json.dumps(summary_values(monitor, now_s)), flush=True)
+        yield _json_lines()
     elif sys.stdout.isatty():
         from rich.live import Live
         from rich.text import Text

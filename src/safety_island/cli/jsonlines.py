@@ -8,14 +8,20 @@ import os
 import select
 from collections.abc import Callable, Mapping
 
+from safety_island import __version__
 from safety_island.cli.streams import is_full
 
 MAX_LINE = 4096
 """What a pipe that polls as writable takes at once without blocking (PIPE_BUF of Linux)."""
 
+HEAD: Mapping[str, object] = {"version": __version__}
+"""What the first line of a program says beyond its event."""
+
 
 class JsonLines:
     """One JSON object a line on a file descriptor; a line that would have to wait is dropped.
+
+    The first one that is written has HEAD in it.
 
     ``dropped`` counts those, and those longer than MAX_LINE. With ``patient`` lines wait for their
     reader: for virtual time, where nobody is in a hurry. When the reader has gone, ``on_lost`` is
@@ -26,6 +32,7 @@ class JsonLines:
         self, on_lost: Callable[[str], None], descriptor: int = 1, *, patient: bool = False
     ) -> None:
         self.dropped = 0
+        self._head = HEAD
         self._on_lost, self._is_lost = on_lost, False
         self._timeout_ms = None if patient else 0
         self._descriptor = descriptor
@@ -36,10 +43,12 @@ class JsonLines:
         """Write one event; a number that is NaN or infinite becomes null."""
         if self._is_lost:
             return
-        line = json.dumps(plain({"event": event, **values}), allow_nan=False).encode() + b"\n"
+        document = plain({"event": event, **self._head, **values})
+        line = json.dumps(document, allow_nan=False).encode() + b"\n"
         try:
             if len(line) <= MAX_LINE and self._poll.poll(self._timeout_ms):
                 os.write(self._descriptor, line)
+                self._head = {}
             else:
                 self.dropped += 1
         except OSError as error:

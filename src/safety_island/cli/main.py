@@ -9,6 +9,7 @@ from collections.abc import Sequence
 
 from safety_island import __version__
 from safety_island.cli import streams
+from safety_island.cli.exit_codes import EXIT_CODES
 from safety_island.cli.foreign import printable
 from safety_island.cli.memory_limit import check_memory_limit
 from safety_island.cli.parser import Parser, UsageError, nearest
@@ -39,6 +40,9 @@ def overview() -> str:
             "",
             "commands:",
             *rows,
+            "",
+            "exit codes:",
+            *(f"  {code:>3}  {meaning}" for code, meaning in EXIT_CODES.items()),
             "",
             "'island COMMAND --help' explains a command and shows examples.",
             "'island --version' prints the version. Start with: island demo",

@@ -6,7 +6,7 @@ import argparse
 
 from safety_island.cli import options
 from safety_island.cli.jsonlines import JsonLines
-from safety_island.cli.parser import teach
+from safety_island.cli.parser import UsageError, teach
 from safety_island.cli.stopping import StopAtOnce, StopFlag
 from safety_island.cli.tell import tell, tell_lost
 from safety_island.sim.courses import COURSES, DEFAULT_COURSE
@@ -20,7 +20,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         """
 Stand in for Autoware: publish a trajectory at 10 Hz, and odometry, acceleration and steering of a
 simulated vehicle at 40 Hz; drive it by the control commands that come back. Autonomous mode is
-engaged when commands come. When they stop coming the vehicle brakes, as Autoware's gate would.
+engaged when commands come. When they stop coming the vehicle brakes, as Autoware would see to.
 """,
         ("island main-compute", "the s-curve on domain 1, once"),
         ("island main-compute --course slalom --repeat", "another course, lap after lap"),
@@ -49,6 +49,10 @@ engaged when commands come. When they stop coming the vehicle brakes, as Autowar
 
 def execute(arguments: argparse.Namespace) -> int:
     """Drive until the course is driven, time is up, or told to stop."""
+    if arguments.repeat and arguments.within:
+        raise UsageError(
+            "--within: --repeat drives without end; drop one, or end the time with --duration"
+        )
     with StopAtOnce() as start:
         from safety_island.platform import load
         from safety_island.sim.main_compute import MainComputeOptions, run

@@ -204,6 +204,16 @@ def add_realtime(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def check_realtime(arguments: argparse.Namespace) -> None:
+    """Raise ConfigurationError for a core that no thread would be pinned to."""
+    from safety_island.errors import ConfigurationError
+
+    if arguments.realtime == "off" and arguments.cpu != "auto":
+        raise ConfigurationError(
+            "--cpu: with --realtime off no core is chosen; drop one of the two options"
+        )
+
+
 def add_json(parser: argparse.ArgumentParser, what: str) -> None:
     """Add ``--json``."""
     parser.add_argument("--json", action="store_true", help=f"print {what} as JSON")

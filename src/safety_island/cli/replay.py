@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any
 from safety_island.cli.options import add_json
 from safety_island.cli.parser import teach
 from safety_island.cli.progress import prepare_kernels
+from safety_island.cli.tell import tell
+from safety_island.errors import ConfigurationError
 from safety_island.extras import is_installed, require
 from safety_island.guard import Verdict as GuardVerdict
 
@@ -60,6 +62,8 @@ def execute(arguments: argparse.Namespace) -> int:
 
     paths = find(arguments.paths)
     _require_solver(paths, arguments.solver)
+    if arguments.csv is not None:
+        _make_folder(arguments.csv)
     prepare_kernels()
     verdicts = []
     for index, path in enumerate(paths):
@@ -73,6 +77,19 @@ def execute(arguments: argparse.Namespace) -> int:
     else:
         print(f"{len(verdicts)} runs: {passed} passed, {len(verdicts) - passed} failed")
     return 0 if passed == len(verdicts) else 1
+
+
+def _make_folder(folder: Path) -> None:
+    """Make the folder for the ticks, and say so; the one around it must be there."""
+    if folder.exists():
+        return
+    try:
+        folder.mkdir()
+    except OSError as error:
+        raise ConfigurationError(
+            f"--csv {folder}: the folder cannot be made: {error.strerror}"
+        ) from None
+    tell(f"island: made the folder {folder}")
 
 
 def _require_solver(paths: Sequence[Path], solver: str | None) -> None:

@@ -30,6 +30,10 @@ second signal ends it at once.
         ("island run -t freertos_posix", "as the simulator: DDS, and CAN frames in memory"),
         ("island run --can socketcan:can0 --can-log drive.log", "DDS and a real bus, with a log"),
         ("island run --duration 10 --json", "ten seconds, every tick as a JSON line"),
+        (
+            "island run --platform sim --course slalom",
+            "a drive in virtual time, in a second or two",
+        ),
     )
     configuration.add_target(parser, "posix")
     configuration.add_configuration(parser)
@@ -42,7 +46,19 @@ second signal ends it at once.
         choices=("posix", "sim"),
         default="posix",
         help="posix: this machine, on DDS; sim: virtual time and topics in memory, with a "
-        "simulated vehicle on the s-curve (default: posix)",
+        "simulated vehicle (default: posix)",
+    )
+    parser.add_argument(
+        "--course",
+        metavar="NAME",
+        help="with --platform sim: what the vehicle drives, one of the courses that 'island "
+        "main-compute --help' lists (default: s-curve)",
+    )
+    parser.add_argument(
+        "--path",
+        metavar="FILE",
+        help="with --platform sim: a path of your own, CSV with the columns x,y,yaw,v (yaw and v "
+        "may be left out) or YAML with a list for each; m, rad, m/s",
     )
     options.add_realtime(parser)
     options.add_duration(parser, 0.0)

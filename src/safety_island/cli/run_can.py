@@ -62,8 +62,8 @@ class CanSide:
             self._logger.info("CAN %s", shown, throttled=True)
 
     def summary(self) -> dict[str, object]:
-        """Return mode and counts of the whole run."""
-        return {"mode": self.output.mode.name, **self.output.counters.as_dict()}
+        """Return output mode and counts of the whole run."""
+        return {"output_mode": self.output.mode.name, **self.output.counters.as_dict()}
 
     def outputs(self, node: ControllerNode) -> tuple[Output, ...]:
         """Return where the commands of the node go; it closes them."""

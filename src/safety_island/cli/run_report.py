@@ -83,14 +83,14 @@ class RunReport:
         """Return the figures of the whole run; times in seconds."""
         times = self._times
         return {
-            "can": self._can.summary() if self._can is not None else None,
+            "can_counts": self._can.summary() if self._can is not None else None,
             "ticks": self.ticks,
             "published": self.published,
             "missed_ticks": self.skipped,
             "refused_samples": self.refused,
             "first_control_s": self.first_control_s,
             "max_lateness_s": self._max_lateness_s,
-            "tick_s": {
+            "tick_times_s": {
                 "median": times.quantile(50),
                 "p99": times.quantile(99),
                 "max": times.max_s if times.count else None,
@@ -102,7 +102,7 @@ class RunReport:
         figures = self.summary()
         if self._lines is not None:
             self._lines.write("summary", figures)
-        median_s = figures["tick_s"]["median"]
+        median_s = figures["tick_times_s"]["median"]
         median = "" if not median_s else f", tick {median_s * 1e3:.2f} ms at the median"
         self._node.logger.info(
             "%d ticks, %d commands, %d ticks missed%s",
@@ -127,6 +127,8 @@ def tick_values(report: TickReport, trace: Records, ages: dict[str, float]) -> d
         "number": report.number,
         "outcome": report.outcome.name,
         "detail": report.detail,
+        "state": report.life.state.name,
+        "reason": report.life.reason.name,
         "lateness_s": report.lateness_s,
         "skipped": report.skipped,
         "tick_s": report.tick_time_s,
@@ -141,8 +143,8 @@ def tick_values(report: TickReport, trace: Records, ages: dict[str, float]) -> d
             "steering_tire_rotation_rate": command.steering_tire_rotation_rate,
             "velocity": command.velocity,
             "acceleration": command.acceleration,
-            "state": LongitudinalState(row["lon_state"]).name,
-            "mpc": MpcStatus(row["mpc_status"]).name,
+            "longitudinal_state": LongitudinalState(row["lon_state"]).name,
+            "mpc_status": MpcStatus(row["mpc_status"]).name,
             "lateral_error": float(row["lateral_error"]),
             "stop_dist": float(row["stop_dist"]),
         }

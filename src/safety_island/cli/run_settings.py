@@ -13,7 +13,7 @@ from pathlib import Path
 from safety_island.build.configuration import InterfaceConfiguration, RunConfiguration
 from safety_island.can.mode import TARGET_OUTPUT, OutputMode
 from safety_island.can.spec import BusSpec, parse_spec
-from safety_island.cli.options import peers_and_tags
+from safety_island.cli.options import check_realtime, peers_and_tags
 from safety_island.dds.config import URI, DdsConfig, user_xml
 from safety_island.errors import ConfigurationError
 from safety_island.platform import LogConfig, LogLevel
@@ -22,6 +22,22 @@ HOSTED = ("freertos_posix", "posix")
 """Targets whose machine is the one that 'island run' runs on; the others name a board's devices."""
 IN_MEMORY = ("mock", "virtual")
 """CAN backends without a wire: what virtual time can use."""
+
+
+_NO_NETWORK, _OWN_VEHICLE = "keeps its topics in memory", "drives the vehicle that its inputs show"
+_IDLE: dict[str, dict[str, str]] = {
+    "sim": {
+        "--domain": _NO_NETWORK,
+        "--interface": _NO_NETWORK,
+        "--peer": _NO_NETWORK,
+        "--domain-tag": _NO_NETWORK,
+        "--sntp": "has virtual time and asks no server",
+        "--realtime": "has virtual time",
+        "--cpu": "has virtual time",
+    },
+    "posix": {"--course": _OWN_VEHICLE, "--path": _OWN_VEHICLE},
+}
+"""Options that do nothing on a platform, and why."""
 
 
 @dataclass(frozen=True)
@@ -48,9 +64,8 @@ def run_settings(arguments: argparse.Namespace, config: RunConfiguration) -> Run
     Raises ConfigurationError for options that contradict each other or the machine.
     """
     is_virtual = arguments.platform == "sim"
+    _refuse_idle(arguments)
     mode, bus = _output(arguments, config, is_virtual)
-    if is_virtual and arguments.sntp is not None:
-        raise ConfigurationError("--sntp: virtual time (--platform sim) asks no server; drop one")
     interface = None if is_virtual else _interface(arguments.interface, config)
     return RunSettings(
         target=config.target,
@@ -65,6 +80,20 @@ def run_settings(arguments: argparse.Namespace, config: RunConfiguration) -> Run
         log=LogConfig(LogLevel(config.log_level), config.log_throttle_s, arguments.log_json),
         thread_stack_size=config.thread_stack_size,
     )
+
+
+def _refuse_idle(arguments: argparse.Namespace) -> None:
+    """Raise ConfigurationError for an option that would do nothing."""
+    idle = _IDLE[arguments.platform]
+    for option, why in idle.items():
+        value = getattr(arguments, option.lstrip("-").replace("-", "_"))
+        if value not in (None, [], "auto"):
+            raise ConfigurationError(
+                f"{option}: --platform {arguments.platform} {why}; drop one of the two options"
+            )
+    if arguments.course is not None and arguments.path is not None:
+        raise ConfigurationError("--course and --path: one vehicle drives one of them; drop one")
+    check_realtime(arguments)
 
 
 def _output(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 from collections.abc import Callable
 from typing import cast
 
@@ -10,23 +11,35 @@ from safety_island.cli.tell import tell
 from safety_island.node.transport import Transport
 from safety_island.platform import Platform
 from safety_island.platform.sim import SimPlatform
-from safety_island.sim.courses import DEFAULT_COURSE, load_course
+from safety_island.sim.courses import DEFAULT_COURSE, Course, load_course
 from safety_island.sim.main_compute import PERIOD_NS, PLAN_EVERY, MainCompute
+from safety_island.sim.own_path import read_course
 from safety_island.sim.world import World
+
+
+def course_of(arguments: argparse.Namespace) -> Course:
+    """Return the course that ``--course`` or ``--path`` names. Raises ConfigurationError."""
+    if arguments.path is not None:
+        return read_course(arguments.path)
+    return load_course(arguments.course or DEFAULT_COURSE)
 
 
 class VirtualVehicle:
     """A main compute on the node's own clock and topics; ``on_end`` is called at its last stop."""
 
     def __init__(
-        self, platform: Platform, transport: Transport, on_end: Callable[[], None]
+        self,
+        platform: Platform,
+        transport: Transport,
+        on_end: Callable[[], None],
+        course: Course,
     ) -> None:
         self._platform = cast(SimPlatform, platform)
         self._clock = self._platform.clock
         self._on_end = on_end
         self._rounds = 0
         start = self._clock.monotonic_ns() * 1e-9
-        self.world = World(load_course(DEFAULT_COURSE), start)
+        self.world = World(course, start)
         self._main_compute = MainCompute(self.world, transport, self._clock)
         self._act()
 

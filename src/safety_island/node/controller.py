@@ -53,16 +53,19 @@ class ControllerNode(Node):
         *,
         mode: OutputMode = OutputMode.DDS_ONLY,
         joined_at: float | None = None,
+        where: str = "",
     ) -> None:
         """Enter the topics. ``outputs``: where commands go; None: to ``control_cmd`` alone.
 
         With ``mode`` CAN_ONLY nobody else brakes the vehicle, so a stop is declared before
-        silence; ``joined_at`` [s, monotonic]: when the transport entered its domain (None: now).
+        silence; ``joined_at`` [s, monotonic]: when the transport entered its domain (None: now);
+        ``where`` names domain and interface, for the line that says what is waited for.
         """
         super().__init__(NAME, platform, transport)
         if joined_at is None:
             joined_at = self.clock.monotonic_ns() / 1e9
         self.parameters, self.mode = parameters, mode
+        self._where = f" on {where}" if where else ""
         self.follower = follower
         self.controllers = Controllers(follower, self.clock, self.logger)
         self._release = release = parameters.node.autoware_release
@@ -191,8 +194,11 @@ class ControllerNode(Node):
 
     def _blocked(self, now: float) -> Blocked:
         """Return what forbids to send, before the controllers are asked."""
-        for name in () if self.inputs.are_complete else self.inputs.missing():
-            self.logger.info("Waiting for %s data", name, throttled=True, site=f"input {name}")
+        if not self.inputs.are_complete and (names := self.inputs.missing()):
+            awaited = ", ".join(f"{name} data" for name in names)
+            self.logger.info(
+                "Waiting for %s%s", awaited, self._where, throttled=True, site="inputs"
+            )
         blocked = self.inputs.blocked(now)
         reason = self._refuses(now)
         if not reason:

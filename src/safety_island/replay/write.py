@@ -27,7 +27,6 @@ def write_csv(folder: Path, run: Recording, replayed: dict[str, Table]) -> Path:
             words[-2:] = act.verdict.name, " ".join(names_of(act.limits))
         lines.append(",".join(words))
     try:
-        folder.mkdir(parents=True, exist_ok=True)
         path.write_text("\n".join(lines) + "\n")
     except OSError as error:
         raise IslandError(f"{path} cannot be written: {error.strerror}") from None

@@ -140,10 +140,15 @@ def orientation(yaw: float, pitch: float) -> tuple[float, float, float, float]:
 
 
 def drive(
-    follower: Follower, course: Course, period_s: float, *, limit_s: float | None = None
+    follower: Follower,
+    course: Course,
+    period_s: float,
+    *,
+    limit_s: float | None = None,
+    plant: PlantParams | None = None,
 ) -> Drive:
     """Drive a course to its last stop, or for ``limit_s`` [s] (default: 1.5 times its duration)."""
-    loop = ClosedLoop(follower, course, period_s)
+    loop = ClosedLoop(follower, course, period_s, plant=plant)
     end = START_S + (1.5 * course.duration if limit_s is None else limit_s)
     rows = []
     while loop.now < end and not loop.planner.finished:

@@ -6,6 +6,7 @@ where it starts, so that a controller finds path behind the vehicle as well.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 
@@ -97,14 +98,18 @@ def make_points(path: Path, speed: Floats, first: int, last: int) -> Records:
     return points
 
 
-def _make_legs(path: Path, stops: tuple[float, ...], limits: SpeedLimits) -> tuple[Leg, ...]:
-    """Cut the path at its stops."""
+def make_legs(path: Path, stops: Sequence[float], cruise: Floats) -> tuple[Leg, ...]:
+    """Cut a path at its stops [m], counted from the end of the lead-in; its end is one as well.
+
+    ``cruise`` is the highest speed [m/s] at each point of the path.
+    """
     lead = round(LEAD_IN / SPACING)
     ends = [lead + round(stop / SPACING) for stop in stops] + [len(path.x) - 1]
     legs, start = [], lead
     for end in ends:
         first = start - lead
-        speed = speed_profile(path.curvature[first : end + 1], lead, limits)
+        part = slice(first, end + 1)
+        speed = speed_profile(path.curvature[part], lead, SpeedLimits(cruise[part]))
         points = make_points(path, speed, first, end)
         legs.append(Leg(points, lead, (first - lead) * SPACING))
         start = end
@@ -118,5 +123,5 @@ def load_course(name: str) -> Course:
     if design is None:
         raise ConfigurationError(f"unknown course '{name}'; there are: {', '.join(COURSES)}")
     path = join((straight(LEAD_IN), *design.pieces()))
-    legs = _make_legs(path, design.stops, SpeedLimits(design.cruise))
+    legs = make_legs(path, design.stops, np.full(len(path.x), design.cruise))
     return Course(name, design.summary, legs)

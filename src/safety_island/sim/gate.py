@@ -1,7 +1,9 @@
 """The command gate between controller and vehicle: brakes when commands stop coming.
 
-It does what matters here of Autoware's ``vehicle_cmd_gate``: in manual mode, before the first
-command, and after a silence the vehicle brakes with the steering held.
+It does in one place what Autoware's ``vehicle_cmd_gate`` and the fail-safe chain around it do: in
+manual mode, before the first command, and after a silence the vehicle brakes with the steering
+held. (Autoware's gate alone passes commands when they arrive and times none out; see
+docs/autoware.md.)
 """
 
 from __future__ import annotations

@@ -171,7 +171,7 @@ def run(
     with MainCompute(world, participant, clock) as main_compute:
         _loop(main_compute, participant, stop, end, report)
     if report is not None:
-        report("summary", {**world.summary(), "refused": main_compute.refused})
+        report("summary", {**world.summary(), "refused_commands": main_compute.refused})
     return 0
 
 

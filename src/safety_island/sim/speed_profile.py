@@ -13,7 +13,8 @@ from safety_island.sim.shapes import SPACING, Floats
 class SpeedLimits:
     """Limits of speed [m/s], of accelerations [m/s^2], and the speed that a leg starts with."""
 
-    cruise: float
+    cruise: float | Floats
+    """One for all points, or one for each."""
     lateral: float = 1.5
     acceleration: float = 1.0
     deceleration: float = 0.8
@@ -27,7 +28,7 @@ def speed_profile(curvature: Floats, start: int, limits: SpeedLimits) -> Floats:
     Forward and backward pass over v^2, as v^2 changes by 2 a ds from one point to the next.
     """
     bend = np.maximum(np.abs(curvature), 1e-9)
-    squared = np.minimum(limits.cruise**2, limits.lateral / bend)
+    squared = np.minimum(np.square(limits.cruise), limits.lateral / bend)
     squared[: start + 1] = limits.engage**2
     squared[-1] = 0.0
     for i in range(start + 1, len(squared)):

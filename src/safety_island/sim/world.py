@@ -133,7 +133,7 @@ class World:
             "lateral_error": place.lateral_error,
             "max_lateral_error": metrics.max_lateral_error,
             "gate": self.gate.state.value,
-            "mode": self.mode.name,
+            "operation_mode": self.mode.name,
             "command_age_s": self.gate.silence(now),
             "commands": self.gate.received,
         }

@@ -24,8 +24,10 @@ TICK: dict[str, Any] = {
     "steering_tire_rotation_rate": 0.0,
     "velocity": 8.0,
     "acceleration": 0.5,
-    "state": "DRIVE",
-    "mpc": "SOLVED",
+    "state": "ACTIVE",
+    "reason": "NONE",
+    "longitudinal_state": "DRIVE",
+    "mpc_status": "SOLVED",
     "lateral_error": 0.02,
     "stop_dist": 80.0,
 }
@@ -67,5 +69,5 @@ ISLAND_SUMMARY: dict[str, Any] = {
     "ticks": 400,
     "published": 390,
     "missed_ticks": 0,
-    "tick_s": {"median": 0.0004, "p99": 0.0008, "max": 0.002},
+    "tick_times_s": {"median": 0.0004, "p99": 0.0008, "max": 0.002},
 }

@@ -58,7 +58,9 @@ def test_a_tick_without_a_command_on_can(can: dict[str, Any] | None) -> None:
     ],
 )
 def test_frames_are_judged(can: dict[str, int], holds: bool) -> None:
-    state = DemoState(vehicle_summary=VEHICLE_SUMMARY, island_summary=ISLAND_SUMMARY | {"can": can})
+    state = DemoState(
+        vehicle_summary=VEHICLE_SUMMARY, island_summary=ISLAND_SUMMARY | {"can_counts": can}
+    )
     last = conditions(state)[-1]
     assert (last.name, last.holds) == ("can_frames", holds)
     assert f"{can['sent']} commands" in last.text
@@ -73,8 +75,8 @@ def test_demo_of_the_simulator_target() -> None:
     )
     summary = json.loads(done.stdout)
     assert summary["conditions"]["can_frames"], done.stderr
-    can = summary["island"]["can"]
-    assert can["mode"] == "DDS_AND_CAN"
+    can = summary["island"]["can_counts"]
+    assert can["output_mode"] == "DDS_AND_CAN"
     assert can["sent"] == summary["island"]["published"] > 0
     (line, *_) = [line for line in done.stderr.splitlines() if "  CAN #" in line]
     shown, frames = line.partition("  command ")[2].split("  CAN #")

@@ -58,7 +58,7 @@ def test_ticks_were_missed() -> None:
 
 
 def test_island_that_never_ticked_is_no_success() -> None:
-    nothing = {"ticks": 0, "tick_s": {"median": None, "p99": None, "max": None}}
+    nothing = {"ticks": 0, "tick_times_s": {"median": None, "p99": None, "max": None}}
     assert not judge(island=nothing)["no_missed_ticks"][0]
 
 

@@ -54,7 +54,7 @@ def test_view_shows_the_figures() -> None:
 
 
 def test_failed_mpc_is_shown() -> None:
-    tick = TICK | {"mpc": "TOO_FAR"}
+    tick = TICK | {"mpc_status": "TOO_FAR"}
     assert "DRIVE, MPC TOO_FAR" in drawn(DemoState(tick=tick, vehicle=STATUS))
 
 

@@ -10,6 +10,7 @@ import sys
 
 import pytest
 
+from safety_island import __version__
 from safety_island.cli.main import main
 from safety_island.dds.config import URI, DdsConfig
 from safety_island.dds.participant import Participant
@@ -44,7 +45,7 @@ def test_why_when_nothing_is_published(domain_id: int, capsys: Capture) -> None:
     sentence, line = capsys.readouterr().out.splitlines()
     assert sentence.startswith("Nothing is being published: odometry is older than its limit")
     expected = {"event": "why", "flows": False, "free": False, "held_by": [], "why": sentence}
-    assert json.loads(line) == expected
+    assert json.loads(line) == {"version": __version__, **expected}
 
 
 def test_once_as_a_line_and_as_json(domain_id: int, capsys: Capture) -> None:
@@ -55,6 +56,7 @@ def test_once_as_a_line_and_as_json(domain_id: int, capsys: Capture) -> None:
     assert line.startswith("ACTIVE  tick ")
     values = json.loads(text)
     assert (values["event"], values["state"], values["commands"]) == ("status", "ACTIVE", 1230)
+    assert values["version"] == __version__
 
 
 def test_json_streams_every_status_until_it_is_told_to_stop(domain_id: int) -> None:

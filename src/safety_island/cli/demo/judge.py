@@ -35,7 +35,7 @@ def conditions(state: DemoState, cut_short: bool = False) -> list[Condition]:
         _stops(vehicle, cut_short),
         _ticks(state.island_summary),
     ]
-    can = state.island_summary.get("can")
+    can = state.island_summary.get("can_counts")
     return [*found, _frames(can)] if can else found
 
 
@@ -70,9 +70,9 @@ def _ticks(island: Event) -> Condition:
         return Condition("no_missed_ticks", False, "the island gave no summary")
     missed, ticks = int(island["missed_ticks"]), int(island["ticks"])
     text = f"{ticks} ticks, {missed or 'none'} missed"
-    median_s = island["tick_s"]["median"]
+    median_s = island["tick_times_s"]["median"]
     if median_s is not None:
-        worst_s = island["tick_s"]["max"]
+        worst_s = island["tick_times_s"]["max"]
         text += f"; one takes {median_s * 1e3:.2f} ms at the median, {worst_s * 1e3:.2f} ms at most"
     return Condition("no_missed_ticks", missed == 0 and ticks > 0, text)
 

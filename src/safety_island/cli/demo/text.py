@@ -18,9 +18,11 @@ def controller(state: DemoState) -> str:
     """Return what the controller does, in a word or two."""
     if not state.tick:
         return "starting"
-    if "state" in state.tick:
-        failed = state.tick["mpc"] != "SOLVED"
-        return str(state.tick["state"]) + (f", MPC {state.tick['mpc']}" if failed else "")
+    if "longitudinal_state" in state.tick:
+        failed = state.tick["mpc_status"] != "SOLVED"
+        return str(state.tick["longitudinal_state"]) + (
+            f", MPC {state.tick['mpc_status']}" if failed else ""
+        )
     return str(state.tick["outcome"]).lower().replace("_", " ")
 
 

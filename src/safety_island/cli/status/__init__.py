@@ -8,6 +8,7 @@ import sys
 from typing import TYPE_CHECKING
 
 from safety_island.cli import options
+from safety_island.cli.jsonlines import HEAD
 from safety_island.cli.parser import teach
 
 if TYPE_CHECKING:
@@ -71,7 +72,7 @@ def _tell_why(arguments: argparse.Namespace, reader: StatusReader) -> int:
 
     *before, status = reader.recent(arguments.timeout)
     values = why_values(status, before, reader.publishers())
-    print(json.dumps({"event": "why", **values}) if arguments.json else values["why"])
+    print(json.dumps({"event": "why", **HEAD, **values}) if arguments.json else values["why"])
     return 0 if values["flows"] else 1
 
 

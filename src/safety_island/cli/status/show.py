@@ -9,6 +9,7 @@ from typing import Protocol, Self, TextIO
 from rich.console import Console
 from rich.live import Live
 
+from safety_island.cli.jsonlines import HEAD
 from safety_island.cli.status.text import plain_line
 from safety_island.cli.status.values import status_values
 from safety_island.cli.status.view import draw
@@ -82,11 +83,14 @@ class PlainShow:
 
 
 class JsonShow(PlainShow):
-    """Prints each status as a JSON object."""
+    """Prints each status as a JSON object; the first one says which version wrote it."""
+
+    _head = HEAD
 
     def __call__(self, statuses: list[Status], now: float) -> None:
         """Print all."""
         for status in statuses:
             values = status_values(status) | {"held_by": held_by([status])}
-            line = json.dumps({"event": "status", **values}, allow_nan=False)
+            line = json.dumps({"event": "status", **self._head, **values}, allow_nan=False)
+            self._head = {}
             print(line, file=self._stream, flush=True)

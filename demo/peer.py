@@ -1,0 +1,1 @@
+../src/safety_island/demo/peer.py
