@@ -50,7 +50,7 @@ def run(arguments: argparse.Namespace, start: StopAtOnce) -> None:
 
 
 def _start(run: Run, start: StopAtOnce, stack: ExitStack) -> None:
-    platform, settings, parameters, _ = run
+    platform, settings, parameters, arguments = run
     for note in notes(parameters):
         platform.logger.info("%s", note)
     dds = bring_up(platform, settings)
@@ -61,7 +61,7 @@ def _start(run: Run, start: StopAtOnce, stack: ExitStack) -> None:
     transport = open_transport(platform, settings.domain_id, dds, NAME)
     stack.callback(transport.close)
     prepare_kernels()
-    follower = TrajectoryFollower(parameters)
+    follower = _follower(run)
     node = ControllerNode(
         platform,
         transport,
@@ -72,7 +72,20 @@ def _start(run: Run, start: StopAtOnce, stack: ExitStack) -> None:
         joined_at=joined_at,
     )
     node.sender.outputs = can.outputs(node)
+    if arguments.debug_topics:
+        from safety_island.node.debug import DebugTopics
+
+        node.observers.append(DebugTopics(node))
     _drive(run, node, follower.trace, can, start)
+
+
+def _follower(run: Run) -> TrajectoryFollower:
+    """Return the controllers; those of the debug topics are the same, with readable memory."""
+    if not run.arguments.debug_topics:
+        return TrajectoryFollower(run.parameters)
+    from safety_island.node.debug import ObservedFollower
+
+    return ObservedFollower(run.parameters)
 
 
 def _json_lines(platform: Platform, node: ControllerNode) -> JsonLines:
