@@ -12,6 +12,7 @@ from safety_island.control.follower import TrajectoryFollower
 from safety_island.control.kernel import JIT
 from safety_island.dds import topics
 from safety_island.messages.codec import decode
+from safety_island.node import ControllerNode
 from safety_island.node.debug import DebugTopics, ObservedFollower
 from safety_island.node.debug.longitudinal import Number
 from safety_island.replay import feed
@@ -91,7 +92,7 @@ class Scene:
 @pytest.fixture(scope="module")
 def played() -> dict[str, dict[int, dict[str, Any]]]:
     """Messages by run and recorded tick."""
-    found = {}
+    found: dict[str, dict[int, dict[str, Any]]] = {}
     with pytest.MonkeyPatch.context() as monkeypatch:
         for name in NAMES:
             scene, wanted = Scene(load(RUNS / f"{name}.npz"), monkeypatch), ticks_of(name)
@@ -270,3 +271,14 @@ def test_only_controllers_that_can_be_read_are_observed(monkeypatch: pytest.Monk
     assert type(player.follower) is TrajectoryFollower
     with pytest.raises(TypeError, match="expected ObservedFollower"):
         DebugTopics(player.node)
+
+
+def test_without_them_no_publisher_is_made(monkeypatch: pytest.MonkeyPatch) -> None:
+    run = load(RUNS / "s_curve/offset_r51.npz")
+
+    def published(node: ControllerNode) -> int:
+        entries = topics.of_release(topics.DEBUG, "0.51")
+        return sum(len(node.transport.writers(entry.name, entry.type_name)) for entry in entries)
+
+    assert published(feed.Replay(run).node) == 0
+    assert published(Scene(run, monkeypatch).node) == len(topics.DEBUG)
