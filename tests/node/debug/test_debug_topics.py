@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -64,6 +65,8 @@ class Scene:
         monkeypatch.setattr(feed, "TrajectoryFollower", ObservedFollower)
         self.player = feed.Replay(run)
         self.node = self.player.node
+        assert isinstance(self.player.follower, ObservedFollower)
+        self.follower = self.player.follower
         self.release = self.node.parameters.node.autoware_release
         self.debug = DebugTopics(self.node)
         self._entries = {entry.key: entry.of_release(self.release) for entry in topics.DEBUG}
@@ -236,7 +239,7 @@ def test_an_unsolved_tick_has_no_horizon_an_empty_path_and_an_error(
 ) -> None:
     scene = Scene(load(RUNS / "s_curve/offset_r51.npz"), monkeypatch)
     scene.tick(0)
-    scene.player.follower.trace["mpc_status"] = 2  # too far
+    scene.follower.trace["mpc_status"] = 2  # too far
     message = scene.observe()
     assert level_of(message, "MPC_solve_checker") == 2
     assert "control_horizon" not in message
@@ -262,7 +265,7 @@ def test_a_run_is_the_same_with_debug_topics(monkeypatch: pytest.MonkeyPatch) ->
         alone.tick(tick)
         observed.tick(tick)
     for record in ("trace", "command", "_lateral", "_longitudinal"):
-        ours = getattr(observed.player.follower, record).tobytes()
+        ours = getattr(observed.follower, record).tobytes()
         assert ours == getattr(alone.follower, record).tobytes(), record
 
 
@@ -282,3 +285,63 @@ def test_without_them_no_publisher_is_made(monkeypatch: pytest.MonkeyPatch) -> N
 
     assert published(feed.Replay(run).node) == 0
     assert published(Scene(run, monkeypatch).node) == len(topics.DEBUG)
+
+
+def changed(name: str, **overrides: object) -> Recording:
+    """Return a run with other parameters."""
+    run = load(RUNS / f"{name}.npz")
+    return replace(run, overrides=run.overrides | overrides)
+
+
+def test_the_arrays_and_diagnostics_of_040(monkeypatch: pytest.MonkeyPatch) -> None:
+    run = changed("reverse/acc_feedback_r43", autoware_release="0.40")
+    scene = Scene(run, monkeypatch)
+    message = scene.tick(0)
+    numbers = message["longitudinal_diagnostic"]["data"]
+    assert (len(message["lateral_diagnostic"]["data"]), len(numbers)) == (21, 34)
+    assert numbers[Number.PITCH_RAD] == np.float32(scene.follower.longitudinal.pitch)
+    (state,) = (s for s in message["diagnostics"]["status"] if s["name"].endswith("control_state"))
+    assert [item["key"] for item in state["values"]] == [
+        "control_state",
+        "translation deviation threshold",
+        "translation deviation",
+        "rotation deviation threshold",
+        "rotation deviation",
+    ]
+    last = message["predicted_trajectory"]["points"][-1]
+    assert last["time_from_start"] == {"sec": 0, "nanosec": 0}
+    assert last["front_wheel_angle_rad"] == 0.0
+
+
+def test_a_dynamic_model_is_followed_beside_the_reference(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No recording has one: it must begin at the vehicle, and end on the path that it follows."""
+    values = {f"vehicle.mass_{wheel}": 600.0 for wheel in ("fl", "fr", "rl", "rr")}
+    values |= {"vehicle.cf": 155494.0, "vehicle.cr": 155494.0}
+    run = changed("s_curve/offset_disabled_r53", vehicle_model_type="dynamics", **values)
+    scene = Scene(run, monkeypatch)
+    for tick in range(100):
+        message = scene.tick(tick)
+    points = message["predicted_trajectory"]["points"]
+    inputs, lat = scene.follower.inputs[0], scene.follower.lateral
+    places = np.array([[p["pose"]["position"][axis] for axis in ("x", "y")] for p in points])
+    reach = abs(inputs.vx) * (lat.delay_n * 0.03 + 2 * lat.prediction_dt)
+    assert np.hypot(*(places[0] - (inputs.x, inputs.y))) < reach
+    path = np.stack([lat.rx[: lat.ref_n], lat.ry[: lat.ref_n]], axis=1)
+    assert np.hypot(*(path - places[-1]).T).min() < 0.2
+    assert len(points) > 40
+
+
+def test_a_solver_tells_its_iterations_and_what_it_minimised(
+    monkeypatch: pytest.MonkeyPatch, played: Any
+) -> None:
+    fast = played["s_curve/offset_r51"].values()
+    assert all((m["lateral_diagnostic"]["data"][18:21] == 0.0).all() for m in fast)
+    scene = Scene(changed("u_turn/launch053_osqp", qp_solver_type="daqp"), monkeypatch)
+    numbers = scene.tick(0)["lateral_diagnostic"]["data"]
+    trace, problem = scene.follower.trace[0], scene.follower.problem
+    u = trace.u[:50]
+    other = 0.5 * (1.01 * u) @ problem.H[:50, :50] @ (1.01 * u) + problem.f[:50] @ (1.01 * u)
+    assert numbers[18] == trace.solver_iterations
+    assert np.isnan(numbers[19])
+    assert numbers[20] < other
+    assert numbers[20] == pytest.approx(0.5 * problem.f[:50] @ u, rel=0.5)

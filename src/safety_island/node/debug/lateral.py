@@ -98,9 +98,7 @@ class LateralNumbers:
         if self._is_unconstrained:
             return 0.0, 0.0, 0.0
         problem, trace = self._follower.problem, self._follower.trace[0]
-        n = self._count - self._count % 2  # for odd n, the solver overwrites row and column n
-        u = trace.u[: self._count]
-        if n != self._count:
-            return float(trace.solver_iterations), math.nan, math.nan
+        n = self._count
+        u = trace.u[:n]
         value = 0.5 * u @ problem.H[:n, :n] @ u + problem.f[:n] @ u
         return float(trace.solver_iterations), math.nan, float(value)
