@@ -152,6 +152,17 @@ def test_virtual_drive_is_the_same_every_time() -> None:
     assert "virtual drive of" in runs[0].stderr
 
 
+def test_debug_topics_change_nothing_else() -> None:
+    command = [*RUN, "--platform", "sim", "--duration", "3", "--json"]
+    plain, observed = (
+        subprocess.run([*command, *more], capture_output=True, text=True, timeout=300)
+        for more in ((), ("--debug-topics",))
+    )
+    assert (plain.returncode, observed.returncode) == (0, 0)
+    assert _ticks(plain.stdout) == _ticks(observed.stdout)
+    assert "an observer failed" not in observed.stderr
+
+
 def _ticks(text: str) -> list[dict[str, Any]]:
     events = [json.loads(line) for line in text.splitlines()]
     return [event for event in events if event["event"] == "tick"]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from safety_island.cli.topics_page import PAGE, main, render
-from safety_island.dds.topics import OWN, TOPICS
+from safety_island.dds.topics import DEBUG, OWN, TOPICS
 
 ROOT = Path(__file__).parents[2]
 
@@ -18,6 +18,13 @@ def test_the_committed_page_is_current() -> None:
 def test_every_topic_stands_on_it() -> None:
     page = render()
     assert all(f"`{entry.name}`<br>`{entry.type_name}`" in page for entry in (*TOPICS, *OWN))
+
+
+def test_every_debug_topic_stands_on_it() -> None:
+    page = render()
+    assert all(
+        f"| `{entry.name}` | `{entry.of_release('0.53').type_name}` |" in page for entry in DEBUG
+    )
 
 
 def test_it_is_written_where_it_is_asked_for(tmp_path: Path) -> None:

@@ -68,3 +68,16 @@ def test_an_entry_is_found_by_its_key() -> None:
     assert topics.topic("status") is STATUS
     with pytest.raises(KeyError):
         topics.topic("camera")
+
+
+def test_debug_topics_change_their_package_with_041_and_are_not_bridged() -> None:
+    old, new = (topics.of_release(topics.DEBUG, release) for release in ("0.40", "0.41"))
+    assert not set(topics.DEBUG) & {*TOPICS, *OWN}
+    assert all(entry.bridged is None for entry in new)
+    assert all(registry.known(entry.type_name) for entry in (*old, *new))
+    assert [entry.name for entry in old] == [entry.name for entry in new]
+    packages = [
+        {entry.type_name.split("/")[0] for entry in entries if "debug_msgs" in entry.type_name}
+        for entries in (old, new)
+    ]
+    assert packages == [{"tier4_debug_msgs"}, {"autoware_internal_debug_msgs"}]

@@ -63,15 +63,22 @@ MSG_TEXTS = {
         bool is_autonomous_mode_available
         bool is_local_mode_available
         bool is_remote_mode_available""",
-    "autoware_internal_debug_msgs/msg/Float32Stamped": """
+    **{
+        f"{package}/msg/{name}": f"""
         builtin_interfaces/Time stamp
-        float32 data""",
-    "autoware_internal_debug_msgs/msg/Float64Stamped": """
+        {field}"""
+        for package in ("tier4_debug_msgs", "autoware_internal_debug_msgs")
+        for name, field in (
+            ("Float32Stamped", "float32 data"),
+            ("Float32MultiArrayStamped", "float32[] data"),
+            ("Float64Stamped", "float64 data"),
+        )
+    },
+    "autoware_control_msgs/msg/ControlHorizon": """
         builtin_interfaces/Time stamp
-        float64 data""",
-    "tier4_debug_msgs/msg/Float64Stamped": """
-        builtin_interfaces/Time stamp
-        float64 data""",
+        builtin_interfaces/Time control_time
+        float32 time_step_ms
+        autoware_control_msgs/Control[] controls""",
     "rmw_dds_common/msg/Gid": "uint8[16] data",
 }
 """As the public packages define them, written from spec and packages, not from our IDL files."""
@@ -124,11 +131,14 @@ def _map(kind: FieldType, value: Any, make: Any, arrays: bool) -> Any:
         if isinstance(kind.element, Named):
             return [make(kind.element.name, item) for item in value]
         return np.array(value, _DTYPES[kind.element]) if arrays else list(value)
+    if kind is Primitive.OCTET and arrays and value > 127:
+        return value - 256  # rosbags reads a byte as a signed number
     return make(kind.name, value) if isinstance(kind, Named) else value
 
 
 _DTYPES: dict[Element, str] = {
     Primitive.DOUBLE: "f8",
+    Primitive.FLOAT: "f4",
     Primitive.UINT8: "u1",
     Primitive.UINT32: "u4",
 }

@@ -18,10 +18,14 @@ FIELDS = {
     " is_in_transition is_stop_mode_available is_autonomous_mode_available"
     " is_local_mode_available is_remote_mode_available",
     "autoware_control_msgs/msg/Control": "stamp control_time lateral longitudinal",
+    "autoware_control_msgs/msg/ControlHorizon": "stamp control_time time_step_ms controls",
     "autoware_control_msgs/msg/Lateral": "stamp control_time steering_tire_angle"
     " steering_tire_rotation_rate is_defined_steering_tire_rotation_rate",
     "autoware_control_msgs/msg/Longitudinal": "stamp control_time velocity acceleration jerk"
     " is_defined_acceleration is_defined_jerk",
+    "autoware_internal_debug_msgs/msg/Float32MultiArrayStamped": "stamp data",
+    "autoware_internal_debug_msgs/msg/Float32Stamped": "stamp data",
+    "autoware_internal_debug_msgs/msg/Float64Stamped": "stamp data",
     "autoware_planning_msgs/msg/Trajectory": "header points",
     "autoware_planning_msgs/msg/TrajectoryPoint": "time_from_start pose longitudinal_velocity_mps"
     " lateral_velocity_mps acceleration_mps2 heading_rate_rps front_wheel_angle_rad"
@@ -29,6 +33,9 @@ FIELDS = {
     "autoware_vehicle_msgs/msg/SteeringReport": "stamp steering_tire_angle",
     "builtin_interfaces/msg/Duration": "sec nanosec",
     "builtin_interfaces/msg/Time": "sec nanosec",
+    "diagnostic_msgs/msg/DiagnosticArray": "header status",
+    "diagnostic_msgs/msg/DiagnosticStatus": "level name message hardware_id values",
+    "diagnostic_msgs/msg/KeyValue": "key value",
     "geometry_msgs/msg/Accel": "linear angular",
     "geometry_msgs/msg/AccelWithCovariance": "accel covariance",
     "geometry_msgs/msg/AccelWithCovarianceStamped": "header accel",
@@ -56,6 +63,8 @@ FIELDS = {
     " longitudinal_state mpc_status guard_verdict output_mode arm_result"
     " other_control_writers degraded armed engaged control_enabled published inputs",
     "std_msgs/msg/Header": "stamp frame_id",
+    "tier4_debug_msgs/msg/Float32MultiArrayStamped": "stamp data",
+    "tier4_debug_msgs/msg/Float32Stamped": "stamp data",
     "tier4_debug_msgs/msg/Float64Stamped": "stamp data",
 }
 

@@ -63,6 +63,12 @@ second signal ends it at once.
     options.add_realtime(parser)
     options.add_duration(parser, 0.0)
     options.add_json(parser, "every tick")
+    parser.add_argument(
+        "--debug-topics",
+        action="store_true",
+        help="publish what Autoware's own tools and RViz look at: predicted trajectory, horizon of "
+        "commands, numbers of both controllers, /diagnostics (docs/topics.md)",
+    )
     parser.add_argument("--log-json", action="store_true", help="log lines as JSON objects")
 
 

@@ -53,6 +53,7 @@ def run(arguments: argparse.Namespace, start: StopAtOnce) -> None:
 
 def _start(run: Run, start: StopAtOnce, stack: ExitStack) -> None:
     platform, settings, parameters = run.platform, run.settings, run.parameters
+    arguments = run.arguments
     for note in notes(parameters):
         platform.logger.info("%s", note)
     dds = bring_up(platform, settings)
@@ -63,7 +64,7 @@ def _start(run: Run, start: StopAtOnce, stack: ExitStack) -> None:
     transport = open_transport(platform, settings.domain_id, dds, NAME)
     stack.callback(transport.close)
     prepare_kernels()
-    follower = TrajectoryFollower(parameters)
+    follower = _follower(run)
     node = ControllerNode(
         platform,
         transport,
@@ -75,6 +76,10 @@ def _start(run: Run, start: StopAtOnce, stack: ExitStack) -> None:
         where="" if platform.name == "sim" else where(settings.domain_id, dds),
     )
     node.sender.outputs = can.outputs(node)
+    if arguments.debug_topics:
+        from safety_island.node.debug import DebugTopics
+
+        node.observers.append(DebugTopics(node))
     _drive(run, node, follower.trace, can, start)
 
 
@@ -82,6 +87,15 @@ def where(domain_id: int, dds: DdsConfig) -> str:
     """Name a domain, and its interface or what chooses that."""
     chosen_by = dds.interface or "the DDS library's interface"
     return f"domain {domain_id} ({URI if user_xml() is not None else chosen_by})"
+
+
+def _follower(run: Run) -> TrajectoryFollower:
+    """Return the controllers; those of the debug topics are the same, with readable memory."""
+    if not run.arguments.debug_topics:
+        return TrajectoryFollower(run.parameters)
+    from safety_island.node.debug import ObservedFollower
+
+    return ObservedFollower(run.parameters)
 
 
 def _json_lines(platform: Platform, node: ControllerNode) -> JsonLines:

@@ -19,9 +19,10 @@ from safety_island.control.input_check import (
 )
 from safety_island.control.limits import MAX_POINTS
 from safety_island.control.point_list import SAME_PLACE
+from safety_island.control.release import RELEASES
 from safety_island.control.trajectory_clean import MAX_YAW_OFF, REACH
 from safety_island.dds.names import dds_topic_name
-from safety_island.dds.topics import OWN, STEERING_OFFSET, TOPICS, TopicEntry
+from safety_island.dds.topics import DEBUG, OWN, STEERING_OFFSET, TOPICS, TopicEntry, of_release
 from safety_island.messages.registry import dds_type_name
 from safety_island.params import load_set
 from safety_island.params.schema import values_of
@@ -61,6 +62,34 @@ With the rules of a newer Autoware (`autoware_release`, see [parameters](paramet
 uses that release's names. The offset of the steering sensor is an input of its own since 0.51: the
 island subscribes to it when `steering_offset.enable_auto_steering_offset_removal` is true, no tick
 waits for it, and a value that is not finite or beyond `steering_offset.input_limit` is refused.
+"""
+
+DEBUG_TOPICS = """\
+## Debug topics
+
+What Autoware's own tools and RViz look at, under the names of its standard launch, so that they
+show the island as they show the original. `island run --debug-topics` publishes them; else none is
+made, and a tick does nothing for them. They stay on the island's domain: point a tool at it
+(`ROS_DOMAIN_ID=2 rviz2`), or name the topics in a [bridge file](../README.md).
+
+Until 0.40 the types of `autoware_internal_debug_msgs` are those of `tier4_debug_msgs`. All messages
+of a tick carry one stamp. They are published when the controllers have run, also when the guard or
+the life cycle lets no command out; the diagnostics always.
+
+| topic | what it holds |
+| --- | --- |
+| horizon | The MPC's commands, one each `time_step_ms`, before the steering offset is taken off, \
+each with the one speed and acceleration. None when the MPC found no solution. |
+| predicted trajectory | Where they lead, from the end of the input delay on, no longer than the \
+reference. Times since 0.47, wheel angles since 0.48; empty when the MPC found no solution. |
+| lateral diagnostic | 21 numbers in Autoware's order, since 0.53 27 (temporal mode; NaN in the \
+spatial one). The duration of the solver alone is not measured: NaN. |
+| longitudinal diagnostic | 34 numbers, since 0.41 37, since 0.53 43. A number keeps its old value \
+where a tick does not set it, and is NaN before the first time, where Autoware's is uninitialised. |
+| slope, steering offset | The slope in use and the offset in force [rad]. |
+| diagnostics | `control_state` (an error in EMERGENCY only), `MPC_solve_checker`, and since 0.51 \
+`cyclic_message_timeout` (an error when the trajectory is older than \
+`cyclic_message_timeout_thr_sec`); each with `controller_node_exe: ` in front. |
 """
 
 _NORMS = f"{MIN_SQUARE_NORM**0.5:g} to {MAX_SQUARE_NORM**0.5:g}"
@@ -114,6 +143,7 @@ def render() -> str:
         f"{INTRODUCTION}\n{_table(TOPICS)}\n\n"
         f"{OWN_TOPICS}\n{_table(OWN)}\n\n"
         f"{NEWER}\n{_newer_names()}\n\n"
+        f"{DEBUG_TOPICS}\n{_debug_names()}\n\n"
         f"{BOUNDS}\n"
         "## As DDS tools show them\n\n"
         f"| ROS topic | DDS topic | DDS type |\n| --- | --- | --- |\n{names}\n"
@@ -130,6 +160,14 @@ def _newer_names() -> str:
             )
     offset = STEERING_OFFSET
     rows.append(f"| 0.51 | `{offset.name}`<br>`{offset.type_name}` | new |")
+    return "\n".join(rows)
+
+
+def _debug_names() -> str:
+    """Return the table of the debug topics, as the newest release has them."""
+    rows = ["| topic | type |", "| --- | --- |"]
+    for entry in of_release(DEBUG, RELEASES[-1]):
+        rows.append(f"| `{entry.name}` | `{entry.type_name}` |")
     return "\n".join(rows)
 
 

@@ -176,6 +176,43 @@ ARM = TopicEntry(
     None,
 )
 
+
+def _debug(key: str, name: str, type_name: str) -> TopicEntry:
+    """Return a debug topic; its type was one of tier4_debug_msgs until 0.40."""
+    name = f"/control/trajectory_follower/{name}"
+    before = type_name.replace("autoware_internal_debug_msgs", "tier4_debug_msgs")
+    newer = () if before == type_name else (("0.41", name, type_name),)
+    return TopicEntry(key, name, before, Direction.OUT, DEFAULT, EVERY_TICK, newer=newer)
+
+
+_NUMBERS = "autoware_internal_debug_msgs/msg/Float32MultiArrayStamped"
+CONTROL_HORIZON = _debug(
+    "control_horizon",
+    "controller_node_exe/debug/control_cmd_horizon",
+    "autoware_control_msgs/msg/ControlHorizon",
+)
+PREDICTED_TRAJECTORY = _debug(
+    "predicted_trajectory",
+    "lateral/predicted_trajectory",
+    "autoware_planning_msgs/msg/Trajectory",
+)
+LATERAL_DIAGNOSTIC = _debug("lateral_diagnostic", "lateral/diagnostic", _NUMBERS)
+LONGITUDINAL_DIAGNOSTIC = _debug("longitudinal_diagnostic", "longitudinal/diagnostic", _NUMBERS)
+SLOPE_ANGLE = _debug("slope_angle", "longitudinal/slope_angle", _NUMBERS)
+ESTIMATED_OFFSET = _debug(
+    "estimated_steer_offset",
+    "controller_node_exe/output/estimated_steer_offset",
+    "autoware_internal_debug_msgs/msg/Float32Stamped",
+)
+DIAGNOSTICS = TopicEntry(
+    "diagnostics",
+    "/diagnostics",
+    "diagnostic_msgs/msg/DiagnosticArray",
+    Direction.OUT,
+    DEFAULT,
+    EVERY_TICK,
+)
+
 TOPICS = (
     STEERING,
     TRAJECTORY,
@@ -192,6 +229,16 @@ OUTPUTS = tuple(entry for entry in TOPICS if entry.direction is Direction.OUT)
 BRIDGED = tuple(entry for entry in TOPICS if entry.bridged is not None)
 OWN = (STATUS, ARM)
 """The island's own, beyond the contract, on its own domain."""
+DEBUG = (
+    CONTROL_HORIZON,
+    PREDICTED_TRAJECTORY,
+    LATERAL_DIAGNOSTIC,
+    LONGITUDINAL_DIAGNOSTIC,
+    SLOPE_ANGLE,
+    ESTIMATED_OFFSET,
+    DIAGNOSTICS,
+)
+"""What Autoware's own tools and RViz look at; published only when asked for."""
 
 
 def of_release(entries: Iterable[TopicEntry], release: str) -> tuple[TopicEntry, ...]:

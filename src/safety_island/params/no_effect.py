@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-_DEBUG = "debug topics are not published; the trace of each tick holds these values"
+_PREDICTED = "'island run --debug-topics' publishes the predicted trajectory"
+_OTHERS = "this topic is not published; others are, by 'island run --debug-topics'"
 _UNREAD = "no release of Autoware reads it either"
 _LOADS = "follows from the loads of the wheels and the wheelbase"
 _NESTED = "Autoware does not read it here either, only below 'vehicle:'"
@@ -26,10 +27,12 @@ NO_EFFECT: dict[str, NoEffect] = {
     # lateral/mpc.param.yaml
     "acceleration_limit": NoEffect(f"{_UNREAD}; mpc_acceleration_limit acts"),
     "velocity_time_constant": NoEffect(f"{_UNREAD}; mpc_velocity_time_constant acts"),
-    "use_delayed_initial_state": NoEffect("concerns the predicted trajectory, a debug output"),
-    "publish_debug_trajectories": NoEffect(_DEBUG),
-    "debug_publish_predicted_trajectory": NoEffect(_DEBUG),
-    "debug_publish_resampled_reference_trajectory": NoEffect(_DEBUG),
+    "use_delayed_initial_state": NoEffect(
+        "the predicted trajectory of '--debug-topics' begins after the delay"
+    ),
+    "publish_debug_trajectories": NoEffect(_OTHERS),
+    "debug_publish_predicted_trajectory": NoEffect(_PREDICTED),
+    "debug_publish_resampled_reference_trajectory": NoEffect(_OTHERS),
     "mass_kg": NoEffect(_NESTED),
     "mass_fl": NoEffect(_NESTED),
     "mass_fr": NoEffect(_NESTED),
@@ -43,7 +46,7 @@ NO_EFFECT: dict[str, NoEffect] = {
     # longitudinal/pid.param.yaml
     "stopped_jerk": NoEffect(_UNREAD),
     # trajectory_follower_node.param.yaml
-    "enable_control_cmd_horizon_pub": NoEffect("the experimental horizon is not published"),
+    "enable_control_cmd_horizon_pub": NoEffect("'island run --debug-topics' publishes the horizon"),
     "use_trajectory_steering_for_feedforward": NoEffect(
         "an open proposal, in no release", only=False
     ),

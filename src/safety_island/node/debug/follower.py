@@ -1,0 +1,37 @@
+"""A trajectory follower whose memory may be read between two ticks."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from safety_island.control.follower import TrajectoryFollower
+from safety_island.control.records import Records
+
+
+class ObservedFollower(TrajectoryFollower):
+    """The same controllers; an observer reads their records and writes none."""
+
+    @property
+    def params(self) -> Any:
+        """PARAMS: parameters and rules."""
+        return self._params[0]
+
+    @property
+    def lateral(self) -> Any:
+        """LATERAL_STATE."""
+        return self._lateral[0]
+
+    @property
+    def longitudinal(self) -> Any:
+        """LONGITUDINAL_STATE."""
+        return self._longitudinal[0]
+
+    @property
+    def path(self) -> Records:
+        """The list that the last longitudinal tick worked on; its length is ``longitudinal.n``."""
+        return self._work
+
+    @property
+    def problem(self) -> Any:
+        """QP: the last quadratic programme."""
+        return self._qp[0]
