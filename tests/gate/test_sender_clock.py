@@ -172,6 +172,21 @@ class TestRate:
         found = self.windows(clock, (0.9, 0.9, 0.9, 1.0), (0.9, 0.9, 0.9, 1.0))
         assert found == [0.0, pytest.approx(-0.1)]
 
+    @pytest.mark.parametrize(
+        ("rates", "error"),
+        [
+            ((1.1, 1.1, 1.0), 0.1),
+            ((0.9, 0.9, 1.0), -0.1),
+            ((1.1, 1.0, 1.0), 0.0),
+            ((0.9, 1.0), 0.0),
+            ((1.1, 1.0), 0.0),
+        ],
+    )
+    def test_of_three_the_middle_one_counts_and_two_must_agree(
+        self, clock: SenderClock, rates: tuple[float, ...], error: float
+    ) -> None:
+        assert self.windows(clock, rates, rates)[-1] == pytest.approx(error)
+
     def test_one_alone_is_off_by_itself(self, clock: SenderClock) -> None:
         assert self.windows(clock, (1.0, 1.0, 1.0, 0.9), (1.0, 1.0, 1.0, 0.9)) == [0.0, 0.0]
 
