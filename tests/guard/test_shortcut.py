@@ -181,6 +181,12 @@ def test_what_is_measured_goes_where_it_belongs() -> None:
     assert tan(found.steering_tire_angle) == pytest.approx(0.5 * WHEEL_BASE / 4.0)
 
 
+def test_the_distance_is_that_from_the_measured_angle() -> None:
+    stream = Stream(steering_distance=0.25)
+    stream.send(0.0, speed=2.0)
+    assert stream.send(0.0, speed=2.0, steering=0.5).limits == Limit.STEERING_DISTANCE
+
+
 def test_after_one_that_passed_at_once_limits_count_from_it() -> None:
     guard = Guard(LIMITS, WHEEL_BASE, TIMEOUT)
     guard.check(Proposal(10.0, 10.0, 1, 0.05, 0.0, 0.0, 0.0), 1.0, 0.05)
