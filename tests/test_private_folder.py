@@ -44,13 +44,13 @@ def test_a_folder_that_others_can_write_to_is_not_trusted(folder: Path, mode: in
 
 
 @needs_root
-def test_a_folder_of_another_user_is_not_trusted(folder: Path) -> None:
+def test_row_90_a_folder_of_another_user_is_not_trusted(folder: Path) -> None:
     os.chown(folder, STRANGER, STRANGER)
     assert distrust(folder) == f"{folder} belongs to user {STRANGER}, not to 0"
 
 
 @needs_root
-def test_a_file_of_another_user_inside_is_not_trusted(folder: Path) -> None:
+def test_row_90_a_file_of_another_user_inside_is_not_trusted(folder: Path) -> None:
     planted = folder / "planted.nbi"
     planted.write_text("")
     os.chown(planted, STRANGER, STRANGER)
@@ -64,7 +64,7 @@ def test_a_folder_below_one_of_another_user_is_not_trusted(folder: Path) -> None
 
 
 @needs_root
-def test_a_link_that_another_user_made_on_the_way_is_not_trusted(
+def test_row_90_a_link_that_another_user_made_on_the_way_is_not_trusted(
     folder: Path, tmp_path: Path
 ) -> None:
     link = tmp_path / "link"
@@ -74,13 +74,13 @@ def test_a_link_that_another_user_made_on_the_way_is_not_trusted(
     assert distrust(link / "kernels") == f"{link} belongs to user {STRANGER}, not to 0"
 
 
-def test_a_link_in_place_of_the_folder_is_not_trusted(folder: Path, tmp_path: Path) -> None:
+def test_row_90_a_link_in_place_of_the_folder_is_not_trusted(folder: Path, tmp_path: Path) -> None:
     link = tmp_path / "link"
     link.symlink_to(folder)
     assert distrust(link) == f"{link} is not a folder but a link"
 
 
-def test_a_link_inside_is_not_trusted(folder: Path) -> None:
+def test_row_90_a_link_inside_is_not_trusted(folder: Path) -> None:
     (folder / "longitudinal_step.lock").symlink_to("/etc/passwd")
     assert "is a link" in distrust(folder)
 

@@ -65,7 +65,7 @@ def held(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
         holder.stdin.close()
 
 
-def test_waiting_for_another_process_is_told_and_ends_at_a_limit(
+def test_row_90_waiting_for_another_process_is_told_and_ends_at_a_limit(
     held: str, monkeypatch: pytest.MonkeyPatch, capsys: Capture
 ) -> None:
     """It waited for ever, without a word."""
@@ -87,7 +87,7 @@ def test_a_lock_that_is_free_is_not_waited_for(
     assert capsys.readouterr().err == ""
 
 
-def test_a_kernel_whose_lock_stays_held_is_left_to_the_process_that_needs_it(
+def test_row_90_a_kernel_whose_lock_stays_held_is_left_to_the_process_that_needs_it(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(progress, "_wait_for_others", lambda name, end: False)

@@ -28,7 +28,7 @@ def virtual(**changes: object) -> tuple[SimPlatform, RunSettings]:
     return make_sim(LogConfig()), RunSettings(**values)
 
 
-def test_the_address_is_waited_for_and_told() -> None:
+def test_row_96_the_address_is_waited_for_and_told() -> None:
     platform, chosen = virtual()
     platform.network.addresses["sim0"] = None
     due_ns = platform.clock.monotonic_ns() + 4_000_000_000

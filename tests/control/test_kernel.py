@@ -213,7 +213,9 @@ def kept(tmp_path: Path) -> Path:
 
 
 @needs_jit
-def test_code_that_is_there_is_loaded_though_another_process_holds_the_lock(kept: Path) -> None:
+def test_row_90_code_that_is_there_is_loaded_though_another_process_holds_the_lock(
+    kept: Path,
+) -> None:
     """One that stands still in the middle of a compilation kept every later start waiting."""
     with (kept / "check_trajectory.lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)

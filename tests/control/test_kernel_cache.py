@@ -138,7 +138,9 @@ def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return folder
 
 
-def test_a_folder_that_others_can_write_to_is_not_used_and_told(cache: Path, runtime: Path) -> None:
+def test_row_90_a_folder_that_others_can_write_to_is_not_used_and_told(
+    cache: Path, runtime: Path
+) -> None:
     """Its files are pickles: who can write them runs code as this user."""
     cache.chmod(0o777)
     folder, note = module(CONTROL).place()
@@ -147,7 +149,7 @@ def test_a_folder_that_others_can_write_to_is_not_used_and_told(cache: Path, run
 
 
 @needs_root
-def test_a_folder_of_another_user_is_not_used_and_told(cache: Path, runtime: Path) -> None:
+def test_row_90_a_folder_of_another_user_is_not_used_and_told(cache: Path, runtime: Path) -> None:
     os.chown(cache, STRANGER, STRANGER)
     folder, note = module(CONTROL).place()
     assert folder is not None and folder.parent == runtime
@@ -155,7 +157,7 @@ def test_a_folder_of_another_user_is_not_used_and_told(cache: Path, runtime: Pat
 
 
 @needs_root
-def test_a_file_of_another_user_in_it_is_not_loaded(cache: Path, runtime: Path) -> None:
+def test_row_90_a_file_of_another_user_in_it_is_not_loaded(cache: Path, runtime: Path) -> None:
     planted = cache / "longitudinal.longitudinal_step-1.py311.nbi"
     planted.write_bytes(b"")
     os.chown(planted, STRANGER, STRANGER)
@@ -165,14 +167,16 @@ def test_a_file_of_another_user_in_it_is_not_loaded(cache: Path, runtime: Path) 
 
 
 @needs_root
-def test_a_runtime_folder_of_another_user_is_not_used_either(blocked: Path, runtime: Path) -> None:
+def test_row_90_a_runtime_folder_of_another_user_is_not_used_either(
+    blocked: Path, runtime: Path
+) -> None:
     runtime.parent.mkdir()
     os.chown(runtime.parent, STRANGER, STRANGER)
     folder, note = module(CONTROL).place()
     assert folder is None and f"belongs to user {STRANGER}" in note
 
 
-def test_a_lock_file_that_is_a_link_is_not_opened(cache: Path, tmp_path: Path) -> None:
+def test_row_90_a_lock_file_that_is_a_link_is_not_opened(cache: Path, tmp_path: Path) -> None:
     victim = tmp_path / "victim"
     victim.write_text("precious")
     loaded = module(CONTROL)

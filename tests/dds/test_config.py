@@ -114,7 +114,7 @@ def test_a_tag_that_cannot_be_sent_is_refused(tag: str) -> None:
         DdsConfig(domain_tags=((2, tag),))
 
 
-def test_an_interface_without_multicast_is_told_when_no_peer_is_named(
+def test_row_96_an_interface_without_multicast_is_told_when_no_peer_is_named(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(network, "flags", {"wg0": 0x91, "eth0": 0x1003, "lo": 0x9}.get)

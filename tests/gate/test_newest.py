@@ -25,8 +25,8 @@ CUT = Message(at(9, 9).data[:-1])
 
 
 def test_one_sample_is_looked_at_as_it_is() -> None:
-    samples = (CUT,)
-    assert newest_first(samples) is samples
+    samples = [CUT]
+    assert newest_first(samples) is samples and in_order(samples)[0] is samples
 
 
 def test_the_highest_stamp_comes_first_whatever_the_order_of_arrival() -> None:

@@ -172,6 +172,21 @@ class TestRate:
         found = self.windows(clock, (0.9, 0.9, 0.9, 1.0), (0.9, 0.9, 0.9, 1.0))
         assert found == [0.0, pytest.approx(-0.1)]
 
+    @pytest.mark.parametrize(
+        ("rates", "error"),
+        [
+            ((1.1, 1.1, 1.0), 0.1),
+            ((0.9, 0.9, 1.0), -0.1),
+            ((1.1, 1.0, 1.0), 0.0),
+            ((0.9, 1.0), 0.0),
+            ((1.1, 1.0), 0.0),
+        ],
+    )
+    def test_of_three_the_middle_one_counts_and_two_must_agree(
+        self, clock: SenderClock, rates: tuple[float, ...], error: float
+    ) -> None:
+        assert self.windows(clock, rates, rates)[-1] == pytest.approx(error)
+
     def test_one_alone_is_off_by_itself(self, clock: SenderClock) -> None:
         assert self.windows(clock, (1.0, 1.0, 1.0, 0.9), (1.0, 1.0, 1.0, 0.9)) == [0.0, 0.0]
 
@@ -190,7 +205,7 @@ class TestRate:
         clock.measure(105.0)
         assert clock.rate_error == 0.0
 
-    @pytest.mark.parametrize("change", ["stepped", "new", "short"])
+    @pytest.mark.parametrize("change", ["stepped", "late", "new", "short"])
     def test_what_cannot_be_measured(self, clock: SenderClock, change: str) -> None:
         inputs = three(clock, 0.0, 0.0)
         for now in (100.0, 102.5, 105.0):
@@ -198,7 +213,7 @@ class TestRate:
                 one.held_ns, one.held_at = round(now * 0.5e9), now
             if change == "stepped":
                 inputs[0].steps += 1
-            elif change == "new" and now < 104.0:
+            elif now < {"late": 101.0, "new": 104.0}.get(change, 0.0):
                 inputs[0].held_at = NEVER
             elif change == "short" and now > 102.0:
                 inputs[0].held_at = 101.0

@@ -83,6 +83,12 @@ def test_a_stamp_that_stands_still_never_refreshes(gate: StampGate) -> None:
         assert offer(gate, 100.0, 1000.0 + seconds) is SampleReason.STAMP_STANDS_STILL
 
 
+def test_after_ten_seconds_it_begins_anew_and_not_before(gate: StampGate) -> None:
+    """What came last is too old by then to say what is late."""
+    assert offer(gate, 100.25, 1000.0 + BEGIN_ANEW_S) is DELAYED
+    assert offer(gate, 100.25, 1000.001 + BEGIN_ANEW_S) is None
+
+
 def test_what_it_says_after_its_stamp(gate: StampGate) -> None:
     assert gate.repeats(b"other header" + b"held")
     assert not gate.repeats(b"said before.help")
@@ -235,6 +241,9 @@ class TestSuccessor:
     def test_a_single_sample_from_before_is_refused(self, gate: StampGate) -> None:
         for seconds in (1.0, 2.0, 3.0):
             assert self.offer(gate, 100.25 + seconds / 8, 1001.0 + seconds) is DELAYED
+
+    def test_one_that_is_older_by_less_than_the_limit_is_refused_too(self, gate: StampGate) -> None:
+        assert self.offer(gate, 99.875, 1000.125) is OLDER
 
     def test_what_was_held_is_no_news_from_it_either(self, gate: StampGate) -> None:
         assert self.offer(gate, 100.0, 1005.0) is SampleReason.STAMP_STANDS_STILL

@@ -9,10 +9,10 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from safety_island.guard import Decision, Guard, Proposal, Verdict
+from safety_island.guard import Decision, Guard, Limit, Proposal, Verdict
 from safety_island.guard.shortcut import Shortcut
 from safety_island.guard.table import SpeedTable
-from tests.guard.rig import TIMEOUT, WHEEL_BASE, limited
+from tests.guard.rig import TIMEOUT, WHEEL_BASE, Stream, limited
 
 LIMITS = limited(
     speed_points=(0.0, 4.0),
@@ -170,6 +170,21 @@ def _agree(found: Decision, expected: Decision) -> None:
         assert found[2:] == pytest.approx(expected[2:], abs=SLACK, rel=SLACK)
     else:
         assert repr(found) == repr(expected)
+
+
+def test_what_is_measured_goes_where_it_belongs() -> None:
+    """At 2 m/s this angle pushes the vehicle aside too hard; at 0.1 m/s it would not."""
+    stream = Stream(lateral_acceleration=0.5)
+    assert stream.send(0.0, speed=2.0).verdict is Verdict.PASSED
+    found = stream.send(0.4, speed=2.0, steering=0.1)
+    assert found.limits == Limit.LATERAL_ACCELERATION
+    assert tan(found.steering_tire_angle) == pytest.approx(0.5 * WHEEL_BASE / 4.0)
+
+
+def test_the_distance_is_that_from_the_measured_angle() -> None:
+    stream = Stream(steering_distance=0.25)
+    stream.send(0.0, speed=2.0)
+    assert stream.send(0.0, speed=2.0, steering=0.5).limits == Limit.STEERING_DISTANCE
 
 
 def test_after_one_that_passed_at_once_limits_count_from_it() -> None:

@@ -35,6 +35,13 @@ class TestStart:
         assert island.tick(disengaged=MANUAL) == Life(State.READY, MANUAL)
         assert island.tick() == WELL
 
+    def test_manual_mode_counts_although_an_input_was_lost_since(self) -> None:
+        """That the island left READY for a while says nothing of who drove the vehicle."""
+        island = Island()
+        assert island.tick(disengaged=MANUAL).state is State.READY
+        assert island.tick(STALE) == Life(State.INIT, STALE)
+        assert island.tick() == WELL
+
     @pytest.mark.parametrize("mode", [MANUAL, Reason.NONE])
     def test_not_while_another_island_drives(self, mode: Reason) -> None:
         """Who leaves autonomous mode means that one; also when this one was ready before."""

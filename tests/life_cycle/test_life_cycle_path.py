@@ -99,3 +99,11 @@ def test_a_stall_on_the_way_is_no_want_of_a_path() -> None:
         island.tick(speed=0.0)
         island.life_cycle.motion()
     assert island.life == silent(Reason.LATCHED, Reason.STALLED)
+
+
+def test_a_tick_that_crashed_is_no_want_of_a_path() -> None:
+    """At rest as well, and whichever tick it is that crashes."""
+    island = Island(fault_ticks=1).engage()
+    assert island.tick(speed=0.0) == WELL
+    island.begin()
+    assert island.life_cycle.fault() == silent(Reason.CONTROLLER_FAULT)

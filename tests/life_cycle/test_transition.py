@@ -145,5 +145,6 @@ def test_the_pairs_are_all_pairs() -> None:
 def test_all_fields_keep_their_order() -> None:
     names = ("blocked", "disengaged", "barred", "arm", "has_ramp", "hold_over", "ramp_over")
     assert Conditions._fields == (*names, "only_path")
+    assert Conditions._field_defaults == {"only_path": False}
     assert Life(State.INIT, Reason.STALLED).cause is Reason.NONE
     assert set(EXPLANATIONS) == set(Reason)

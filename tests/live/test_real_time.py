@@ -44,7 +44,7 @@ def priorities(process: subprocess.Popen[bytes]) -> list[int]:
 @pytest.mark.parametrize(
     ("name", "expected"), [(ISLAND, ISLAND_PRIORITIES), (BRIDGE, BRIDGE_PRIORITIES)]
 )
-def test_control_comes_first_and_the_threads_that_bring_its_inputs_next(
+def test_row_95_control_comes_first_and_the_threads_that_bring_its_inputs_next(
     scene: Scene, tmp_path: Path, name: str, expected: Priorities
 ) -> None:
     """None of them is left where ordinary work can keep it from running."""
@@ -102,7 +102,7 @@ def under_load(scene: Scene, hogs: list[subprocess.Popen[bytes]], mode: str) -> 
 
 @needs_right
 @pytest.mark.slow
-def test_under_load_no_more_ticks_are_missed_than_without_real_time(
+def test_row_95_under_load_no_more_ticks_are_missed_than_without_real_time(
     scene: Scene, hogs: list[subprocess.Popen[bytes]], tmp_path_factory: pytest.TempPathFactory
 ) -> None:
     """And the drive goes on. How much better it is depends on the machine; run with -s to see."""

@@ -37,6 +37,8 @@ Tests of other rooms do not count, nor do runs that take seconds each (recording
 `tools/mutate ROOM --sample N --seed S` tests N mutants by lot; `--files NAME` those of some files.
 """
 
+_MISSING = "Not measured yet: "
+
 Excuses = dict[tuple[str, str, str], str]
 
 
@@ -110,13 +112,13 @@ def excuse_of(mutant: Mutant, excuses: Excuses) -> str:
 
 def update(results: Sequence[Result]) -> Path:
     """Write the page, keeping what it says of rooms that were not tested now."""
-    text = PAGE.read_text("utf-8") if PAGE.exists() else ""
+    text = PAGE.read_text("utf-8").split(f"\n{_MISSING}")[0] if PAGE.exists() else ""
     sections = {
         part.splitlines()[0]: f"## {part}" for part in re.split(r"^## ", text, flags=re.M)[1:]
     }
     sections.update({result.room: result.section() for result in results})
     ordered = [sections[room.name].rstrip() for room in ROOMS if room.name in sections]
     if missing := [room.name for room in ROOMS if room.name not in sections]:
-        ordered.append(f"Not measured yet: {', '.join(missing)}.")
+        ordered.append(f"{_MISSING}{', '.join(missing)}.")
     PAGE.write_text("\n\n".join([INTRODUCTION.rstrip(), *ordered]) + "\n", "utf-8")
     return PAGE.relative_to(ROOT)

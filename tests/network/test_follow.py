@@ -27,7 +27,7 @@ def ends_with(text: str) -> Callable[[str], bool]:
     return lambda line: line.endswith(text)
 
 
-def test_an_interface_that_is_made_anew_is_used_again(machine: Machine) -> None:
+def test_row_96_an_interface_that_is_made_anew_is_used_again(machine: Machine) -> None:
     vehicle, other = machine(), machine()
     vehicle.link("eth0", VEHICLE, other, OTHER)
     receiver = receiver_on(vehicle)
@@ -41,7 +41,7 @@ def test_an_interface_that_is_made_anew_is_used_again(machine: Machine) -> None:
     assert receiver.expect(ends_with("0.2"))
 
 
-def test_a_network_that_is_down_is_a_few_lines(machine: Machine) -> None:
+def test_row_96_a_network_that_is_down_is_a_few_lines(machine: Machine) -> None:
     """The library alone writes one for every packet: three a second and more."""
     vehicle, other = machine(), machine()
     vehicle.link("eth0", VEHICLE, other, OTHER)
@@ -57,7 +57,7 @@ def test_a_network_that_is_down_is_a_few_lines(machine: Machine) -> None:
     assert receiver.expect(ends_with("0.4"))
 
 
-def test_an_address_that_goes_and_comes_back_is_told_and_one_that_changed_too(
+def test_row_96_an_address_that_goes_and_comes_back_is_told_and_one_that_changed_too(
     machine: Machine,
 ) -> None:
     vehicle, other = machine(), machine()

@@ -37,7 +37,7 @@ def forge(machine: Namespace, angle: str, guid: str, host: str, ports: list[str]
     assert sent.expect(str) == "sent"
 
 
-def test_on_loopback_a_datagram_of_another_machine_is_dropped(machine: Machine) -> None:
+def test_row_89_on_loopback_a_datagram_of_another_machine_is_dropped(machine: Machine) -> None:
     vehicle, stranger = machine(), machine()
     vehicle.link("eth0", VEHICLE, stranger, STRANGER)
     receiver, ports = receiver_on(vehicle, "lo")
@@ -58,7 +58,7 @@ def test_on_an_interface_peers_there_and_on_this_machine_are_received(machine: M
     assert received(receiver) == "0.4"
 
 
-def test_on_an_interface_a_datagram_over_another_one_is_dropped(machine: Machine) -> None:
+def test_row_89_on_an_interface_a_datagram_over_another_one_is_dropped(machine: Machine) -> None:
     """Linux takes a packet for any of its addresses on any of its interfaces."""
     vehicle, other, stranger = machine(), machine(), machine()
     vehicle.link("eth0", VEHICLE, other, STRANGER)

@@ -102,7 +102,7 @@ def test_off_changes_nothing() -> None:
 
 
 @needs_root
-def test_without_rights_it_goes_on_and_says_what_is_missing_and_how_to_get_it() -> None:
+def test_row_95_without_rights_it_goes_on_and_says_what_is_missing_and_how_to_get_it() -> None:
     found = take("auto", "auto", *powerless())
     assert found["got"] == []
     missing = ["SCHED_FIFO priority 50", "locked memory (RLIMIT_MEMLOCK is 64 kB)"]
