@@ -140,6 +140,7 @@ def leads_both_ways(points, n):
     return min(forward, backward) > MAX_BACKTRACK
 
 
+@kernel
 def _has_ascending_times(points, n, start):
     """Whether each point is due later than the one before."""
     previous = start
