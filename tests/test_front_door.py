@@ -6,6 +6,7 @@ A stand-in for uv makes the environment here, so no test needs the network.
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import stat
 import subprocess
@@ -15,10 +16,17 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-TOOLS = ("sh", "dirname", "readlink", "cat", "cksum", "rm", "mkdir", "ln", "flock", "expr", "chmod")
+TOOLS = (
+    "sh", "dirname", "readlink", "cat", "cksum", "rm", "mkdir", "ln", "flock", "expr", "chmod",
+    "awk", "date", "df", "du", "find", "grep", "sed", "tail", "wc",
+)  # fmt: skip
 
 UV = """#!/bin/sh
 echo "uv $*" >>"$UV_LOG"
+case $* in
+    *--dry-run*) [ ! -e "$UV_LOG.offline" ]; exit ;;
+    *--offline*) exit 2 ;;
+esac
 [ ! -e "$UV_LOG.fail" ] || exit 1
 if [ "$1" = venv ]; then
     while [ $# -gt 1 ]; do shift; done
@@ -36,7 +44,8 @@ class Door:
     def __init__(self, folder: Path) -> None:
         self.root = folder / "a clone"
         self.root.mkdir()
-        for name in ("island", "pyproject.toml", "requirements.lock", "requirements-dev.lock"):
+        locks = (path.name for path in ROOT.glob("requirements*.lock"))
+        for name in ("island", "pyproject.toml", *locks):
             shutil.copy(ROOT / name, self.root)
         self.bin = folder / "bin"
         self.bin.mkdir()
@@ -49,6 +58,7 @@ class Door:
     def add(self, name: str, text: str) -> None:
         """Put a program on the PATH."""
         path = self.bin / name
+        path.unlink(missing_ok=True)  # it may be a link to the machine's own
         path.write_text(text)
         path.chmod(path.stat().st_mode | stat.S_IXUSR)
 
@@ -96,14 +106,17 @@ def with_uv(door: Door) -> Door:
     return door
 
 
-FIRST_USE = ["venv --quiet", "pip install", "pip install"]
+INSTALL = ["pip install", "pip install", "pip install"]
+"""Whether the index answers, the lock file, the island itself."""
+FIRST_USE = ["venv --quiet", *INSTALL]
 
 
 def test_first_use_makes_everything_then_nothing_more(with_uv: Door) -> None:
     first = with_uv.run("demo", "--plain", "two words")
     assert (first.returncode, first.stdout) == (0, "ran demo --plain two words\n")
     assert "making .venv with Python 3.12.1" in first.stderr
-    assert first.stderr.endswith("island: ready\n")
+    assert re.search(r"island: ready after \d+ s; \.venv takes \d+ MB\n$", first.stderr)
+    assert re.search(r"up to \d+ MB to fetch, \d+ MB of disk \(\d+ MB free\)", first.stderr)
     assert with_uv.calls() == FIRST_USE
     second = with_uv.run("run")
     assert (second.stdout, second.stderr) == ("ran run\n", "")
@@ -124,7 +137,7 @@ def test_changed_lock_installs_again(with_uv: Door) -> None:
     with (with_uv.root / "requirements.lock").open("a") as lock:
         lock.write("# another line\n")
     with_uv.run()
-    assert with_uv.calls() == ["pip install", "pip install"]
+    assert with_uv.calls() == INSTALL
 
 
 def test_interrupted_start_is_repaired(with_uv: Door) -> None:
@@ -152,7 +165,7 @@ def test_failed_installation_is_done_again(with_uv: Door) -> None:
     lock.write_text(lock.read_text()[:-2])
     with_uv.calls()
     with_uv.run()
-    assert with_uv.calls() == ["pip install", "pip install"], "the old stamp is gone"
+    assert with_uv.calls() == INSTALL, "the old stamp is gone"
 
 
 def test_environment_that_lost_its_python_is_replaced(with_uv: Door) -> None:
@@ -225,6 +238,84 @@ def test_dev_brings_the_tests_too(with_uv: Door) -> None:
     with_uv.calls()
     assert with_uv.run("run").stdout == "ran run\n"
     assert with_uv.calls() == [], "what the tests need includes what a run needs"
+
+
+def test_replay_and_bench_bring_the_solver_of_the_recordings(with_uv: Door) -> None:
+    assert with_uv.run("run").returncode == 0
+    assert "requirements-osqp.lock" not in with_uv.log.read_text()
+    assert with_uv.run("replay", "folder").stdout == "ran replay folder\n"
+    assert "requirements-osqp.lock" in with_uv.log.read_text()
+    with_uv.calls()
+    for command in ("bench", "replay", "run"):
+        with_uv.run(command)
+    assert with_uv.calls() == [], "what the comparison needs includes what a run needs"
+
+
+def test_offline_is_one_clear_line_and_nothing_is_kept(with_uv: Door) -> None:
+    mark = Path(f"{with_uv.log}.offline")
+    mark.touch()
+    failed = with_uv.run()
+    assert failed.returncode == 1
+    assert "no package index answers" in failed.stderr.splitlines()[-1]
+    assert not (with_uv.root / ".venv" / "made-run").exists()
+    mark.unlink()
+    assert with_uv.run("run").stdout == "ran run\n"
+
+
+def test_offline_is_no_matter_when_all_is_there(with_uv: Door) -> None:
+    """A lock file that changed in a comment needs nothing new."""
+    with_uv.run()
+    Path(f"{with_uv.log}.offline").touch()
+    with_uv.add("uv", UV.replace("*--offline*) exit 2 ;;", ""))
+    with (with_uv.root / "requirements.lock").open("a") as lock:
+        lock.write("# another line\n")
+    assert with_uv.run("run").stdout == "ran run\n"
+
+
+def test_too_little_disk_is_one_line_before_anything_is_fetched(with_uv: Door) -> None:
+    with_uv.add("df", "#!/bin/sh\necho head\necho / 1 1 51200 50% /\n")
+    failed = with_uv.run()
+    assert failed.returncode == 1
+    assert "MB of disk in" in failed.stderr.splitlines()[-1]
+    assert failed.stderr.splitlines()[-1].endswith(", 50 MB are free")
+    assert with_uv.calls() == ["venv --quiet"]
+
+
+PIP = """\
+Collecting numba==0.68.1 (from -r /a clone/requirements.lock (line 211))
+  Downloading numba-0.68.1-cp311-cp311-manylinux_2_27_x86_64.whl.metadata (2.9 kB)
+Collecting rich==15.0.0 (from -r /a clone/requirements.lock (line 300))
+  Using cached rich-15.0.0-py3-none-any.whl (310 kB)
+Processing {folder}/editables-0.6-py3-none-any.whl (from -r /a clone/requirements.lock (line 213))
+Downloading numba-0.68.1-cp311-cp311-manylinux_2_27_x86_64.whl (3.8 MB)
+Installing collected packages: rich, numba, editables
+Successfully installed editables-0.6 numba-0.68.1 rich-15.0.0
+"""
+"""What pip prints: the metadata first, files in a cache, files in a folder (``--find-links``)."""
+
+
+def test_each_package_is_told_once_with_its_size(door: Door, tmp_path: Path) -> None:
+    (tmp_path / "editables-0.6-py3-none-any.whl").write_bytes(bytes(1_240_000))
+    door.add_python("3.12.1")
+    python = door.bin / "python3"
+    said = tmp_path / "pip.txt"
+    said.write_text(PIP.format(folder=tmp_path))
+    made = f"""case $* in
+*'-m venv'*) mkdir -p '{door.root}/.venv/bin'; ln -s {python} '{door.root}/.venv/bin/python'
+  printf '#!/bin/sh\necho ran\n' >'{door.root}/.venv/bin/island'
+  chmod +x '{door.root}/.venv/bin/island'; exit 0 ;;
+*--require-hashes*) cat {said}; exit 0 ;;
+*'pip --disable'*) exit 0 ;;
+"""
+    door.add("python3", python.read_text().replace("case $* in ", made))
+    result = door.run("run")
+    assert result.stdout == "ran\n", result.stderr
+    assert [line for line in result.stderr.splitlines() if line.startswith("island:   ")] == [
+        "island:   rich 15.0.0, 310 kB, from pip's cache",
+        "island:   editables 0.6, 1.2 MB, from a folder of this machine",
+        "island:   numba 0.68.1, 3.8 MB",
+        "island:   all there; unpacking",
+    ]
 
 
 def error_of(result: subprocess.CompletedProcess[str]) -> str:

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-LOCKS = ("requirements.lock", "requirements-dev.lock")
+LOCKS = ("requirements.lock", "requirements-osqp.lock", "requirements-dev.lock")
 PIN = re.compile(r"([a-z0-9-]+)(?:\[[^]]*\])?==(\S+) ;.*\\$")
 EXTRAS = re.compile(r"([A-Za-z0-9._-]+)\[([^]]+)\]")
 
@@ -24,17 +24,19 @@ def pins(name: str) -> dict[str, set[str]]:
     return found
 
 
-def wanted() -> list[str]:
-    """Requirements of the project itself and of its extras."""
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-    extras = [text for group in project["optional-dependencies"].values() for text in group]
-    return [*project["dependencies"], *extras]
+def wanted(lock: str) -> list[str]:
+    """Requirements of the project itself, and of the extras that a lock file brings."""
+    settings = tomllib.loads((ROOT / "pyproject.toml").read_text())
+    extras = settings["project"]["optional-dependencies"]
+    brought = ("compile",) if lock == LOCKS[0] else tuple(extras)
+    own = settings["tool"]["hatch"]["metadata"]["hooks"]["custom"]["dependencies"]
+    return [*own, *(text for extra in brought for text in extras[extra])]
 
 
 @pytest.mark.parametrize("lock", LOCKS)
 def test_every_requirement_is_locked(lock: str) -> None:
     locked = pins(lock)
-    for requirement in wanted():
+    for requirement in wanted(lock):
         name, relation, version = re.split(r"(==|>=)", requirement)
         name = re.sub(r"[-_.]+", "-", name.partition("[")[0]).lower()
         assert name in locked, f"{requirement}: run tools/lock"
@@ -56,8 +58,13 @@ def test_extras_that_a_package_asks_for_are_pinned_with_it() -> None:
 
 
 def test_development_adds_and_changes_nothing() -> None:
-    run, dev = (pins(lock) for lock in LOCKS)
-    assert {name: dev.get(name) for name in run} == run
+    run, osqp, dev = (pins(lock) for lock in LOCKS)
+    assert {name: osqp.get(name) for name in run} == run
+    assert {name: dev.get(name) for name in osqp} == osqp
+
+
+def test_a_run_brings_nothing_that_only_comparisons_and_tools_need() -> None:
+    assert not {"osqp", "scipy", "joblib", "pytest", "mypy", "ruff"} & pins(LOCKS[0]).keys()
 
 
 @pytest.mark.parametrize("lock", LOCKS)

@@ -107,7 +107,7 @@ def test_a_build_shows_its_steps_and_a_second_one_does_nothing(
 def test_a_machine_without_a_c_compiler_is_told_how_to_get_one(
     in_tmp: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(linker, "find_compiler", lambda: None)
+    monkeypatch.setattr(linker, "find_compiler", lambda machine: None)
     assert main(["build", "-t", "posix"]) == 1
     (error,) = capsys.readouterr().err.splitlines()
     assert "no C compiler" in error and "apt-get install gcc" in error and linker.ZIG in error

@@ -22,7 +22,8 @@ from safety_island.build.errors import BuildError
 from safety_island.build.kernel_compile import entries
 from safety_island.build.machines import AARCH64, X86_64, Machine, host
 from safety_island.build.wheel import build_wheel, check_portable, tag
-from safety_island.control.aot import LIBRARY_NAME
+from safety_island.control.aot import LIBRARY_NAME, sources_hash
+from safety_island.control.status import Refusal
 from tests.build.installed import ROOT, Installation, hatchling, unpacked
 
 pytestmark = pytest.mark.timeout(900)  # the first of a session compiles the kernels
@@ -196,6 +197,38 @@ def test_the_wheel_for_the_other_processor_is_linked_here(tmp_path: Path) -> Non
         check_library(archive.read(f"safety_island/control/{LIBRARY_NAME}"), other)
 
 
+CALL = """
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+extern const char safety_island_sources[65];
+int32_t safety_island_check_trajectory(void *, void *, int64_t);
+int main(void) {
+  void *params = calloc(1, 1 << 20), *points = calloc(1, 1 << 20);
+  printf("%s %d\\n", safety_island_sources, safety_island_check_trajectory(params, points, 1));
+  return 0;
+}
+"""
+
+
+@pytest.mark.skipif(
+    not shutil.which("qemu-aarch64") or not shutil.which("aarch64-linux-gnu-gcc"),
+    reason="no emulator of aarch64 (qemu-user), or no compiler for it (gcc-aarch64-linux-gnu)",
+)
+@pytest.mark.slow
+def test_the_kernels_in_the_wheel_for_aarch64_run(tmp_path: Path) -> None:
+    made = build_wheel(AARCH64, tmp_path, say)
+    with zipfile.ZipFile(made) as archive:
+        library = tmp_path / LIBRARY_NAME
+        library.write_bytes(archive.read(f"safety_island/control/{LIBRARY_NAME}"))
+    (tmp_path / "call.c").write_text(CALL)
+    link = ["aarch64-linux-gnu-gcc", "-o", "call", "call.c", LIBRARY_NAME, "-lm"]
+    subprocess.run(link, cwd=tmp_path, check=True)
+    run = ["qemu-aarch64", "-L", "/usr/aarch64-linux-gnu", "-E", "LD_LIBRARY_PATH=.", "./call"]
+    said = subprocess.check_output(run, cwd=tmp_path, text=True)
+    assert said.split() == [sources_hash(), str(int(Refusal.TOO_FEW_POINTS))]
+
+
 NEEDS = """
 double {function}(double);
 double use(double x) {{ return {function}(x); }}
@@ -326,13 +359,16 @@ def test_osqp_works_from_the_library_with_its_extra_alone(
 
 
 @pytest.mark.slow
-def test_a_target_is_built_where_a_wheel_is_installed(
-    plain: Installation, posix_build: Path
+@pytest.mark.parametrize("kind", ["plain_wheel", "platform_wheel"])
+def test_a_target_is_built_where_a_wheel_is_installed_with_a_compiler(
+    kind: str, posix_build: Path, tmp_path: Path, request: pytest.FixtureRequest
 ) -> None:
     """``posix_build`` has compiled the kernels already."""
-    result = plain.run("build", "-t", "posix", timeout=600)
+    wheel: Path = request.getfixturevalue(kind)
+    installation = Installation(wheel, tmp_path, ("compile",))
+    result = installation.run("build", "-t", "posix", timeout=600)
     assert result.returncode == 0, result.stderr
-    folder = plain.home / "build" / "posix"
+    folder = installation.home / "build" / "posix"
     assert (folder / LIBRARY_NAME).read_bytes() == (posix_build / LIBRARY_NAME).read_bytes()
     assert (folder / "safety-island.pyz").exists()
     shutil.rmtree(folder)

@@ -29,6 +29,7 @@ ENVIRONMENT = {
     "NUMBA_CPU_FEATURES": "",
     "NUMBA_OPT": "0",  # optimised later, for the machine
     "PYTHONHASHSEED": "0",  # the same sources give the same bytes
+    "SAFETY_ISLAND_JIT": "1",  # an installed platform wheel has a library already
 }
 LOCK_LIMIT_S, LOCK_POLL_S = 600.0, 0.2
 """Longest wait [s] for another process that compiles the same, and between two looks."""

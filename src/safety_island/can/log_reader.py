@@ -103,6 +103,8 @@ def _text_of_python_can(kind: LogKind, lines: LogLines) -> Iterator[LogEntry]:
                 else:
                     yield _entry_of(message, kind)
             return
+        except LogError:
+            raise
         except Exception:  # each reader has exceptions of its own for what it cannot parse
             lines.leave_out()
         if kind in _HEADS:

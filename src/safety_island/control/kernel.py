@@ -22,9 +22,11 @@ from safety_island.extras import require
 if TYPE_CHECKING:
     from safety_island.control.kernel_cache import Place
 
-_PLAIN = os.environ.get("SAFETY_ISLAND_JIT", "1") == "0"
+_CHOICE = os.environ.get("SAFETY_ISLAND_JIT", "")
+"""``0``: plain Python; ``1``: compiled here, whatever library there is; nothing: as it comes."""
+_PLAIN = _CHOICE == "0"
 
-LIBRARY = None if _PLAIN else aot.find_library()
+LIBRARY = None if _CHOICE else aot.find_library()
 """The library of kernels that were compiled ahead of time, None when there is none."""
 
 JIT = not _PLAIN and LIBRARY is None
