@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import threading
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
 
@@ -19,7 +20,7 @@ from safety_island.messages.inputs import decode_odometry, decode_operation_mode
 from safety_island.messages.outputs import Control, encode_control
 from safety_island.messages.trajectory import decode_trajectory
 from safety_island.messages.wire import Time
-from safety_island.sim.main_compute import MainComputeOptions, run
+from safety_island.sim.main_compute import MainCompute, MainComputeOptions, run
 from tests.dds.waiting import wait_for
 
 LOOPBACK = DdsConfig(loopback_only=True)
@@ -44,11 +45,12 @@ class Neighbour:
         return self.participant.subscription(topic.name, topic.type_name, topic.subscription_qos)
 
     @contextmanager
-    def stand_in(self, **options: Any) -> Iterator[None]:
+    def stand_in(self, console: Any = None, **options: Any) -> Iterator[None]:
         """Run the stand-in in a thread."""
         chosen = MainComputeOptions(domain=self.domain_id, dds=LOOPBACK, **options)
         report, say = (lambda *event: self.events.append(event)), self.said.append
-        thread = threading.Thread(target=run, args=(chosen, self.stop, None, report, say))
+        arguments = (chosen, self.stop, None, report, say, console)
+        thread = self.thread = threading.Thread(target=run, args=arguments)
         thread.start()
         try:
             yield
@@ -161,3 +163,67 @@ def test_ends_after_its_duration(domain_id: int) -> None:
 def test_an_unknown_course() -> None:
     with pytest.raises(ConfigurationError, match="unknown course 'x'"):
         run(MainComputeOptions(course="x"), threading.Event())
+
+
+class Console:
+    """Stands in for the lines on standard input."""
+
+    def __init__(self) -> None:
+        self.has_ended = self.is_closed = False
+        self.act: list[Callable[[MainCompute], None]] = []
+
+    def poll(self, main_compute: MainCompute) -> None:
+        while self.act:
+            self.act.pop(0)(main_compute)
+
+
+def test_topics_go_on_after_the_drive_until_the_console_is_closed(neighbour: Neighbour) -> None:
+    """Whoever follows the main compute can leave before it does, and misses nothing."""
+    console, modes = Console(), neighbour.inputs["operation_mode"]
+    with neighbour.stand_in(console):
+        wait_for(lambda: neighbour.control.matched())
+
+        def engaged() -> bool:
+            neighbour.command(1.0)
+            return bool(neighbour.status("mode") == "AUTONOMOUS")
+
+        wait_for(engaged)
+        console.has_ended = True
+        wait_for(lambda: any(kind == "summary" for kind, _ in neighbour.events))
+        wait_for(lambda: (s := modes.take_newest()) and decode_operation_mode(s.data).mode == 1)
+        received = neighbour.inputs["odometry"].received
+        wait_for(
+            lambda: (
+                neighbour.inputs["odometry"].take_newest()
+                and neighbour.inputs["odometry"].received > received + 10
+            )
+        )
+        console.is_closed = True
+        wait_for(lambda: not neighbour.thread.is_alive())
+    assert sum(kind == "summary" for kind, _ in neighbour.events) == 1
+
+
+def test_faults_on_the_topics(neighbour: Neighbour) -> None:
+    console, odometry = Console(), neighbour.inputs["odometry"]
+    with neighbour.stand_in(console):
+        wait_for(odometry.take_newest)
+
+        def is_nan() -> bool:
+            sample = odometry.take_newest()
+            return sample is not None and math.isnan(decode_odometry(sample.data).x)
+
+        console.act.append(lambda main_compute: setattr(main_compute, "nan_odometry", True))
+        wait_for(is_nan)
+        console.act.append(lambda main_compute: setattr(main_compute, "nan_odometry", False))
+        wait_for(lambda: not is_nan())
+        console.act.append(lambda main_compute: main_compute.frozen.add("odometry"))
+        wait_for(lambda: not console.act)
+        odometry.take_newest()
+        before = odometry.received
+        steering = neighbour.inputs["steering"]
+        steering.take_newest()
+        more = steering.received + 20
+        wait_for(lambda: steering.take_newest() and steering.received > more)
+        odometry.take_newest()
+        assert odometry.received <= before + 1
+        console.is_closed = True

@@ -126,3 +126,39 @@ def test_ends_after_the_last_stop(said: list[str]) -> None:
 def test_lap_after_lap() -> None:
     world = World(load_course("straight"), START, repeat=True)
     assert world.planner.repeat
+
+
+def test_an_operator_disengages_and_engages(world: World, said: list[str]) -> None:
+    now = _run(world, START, 2.0, lambda: (0.0, 1.0))
+    world.disengage()
+    now = _run(world, now, 2.0, lambda: (0.0, 1.0))
+    assert (world.mode, world.gate.state) == (Mode.STOP, GateState.READY)
+    assert world.plant.speed == 0.0
+    world.engage()
+    _run(world, now, 1.0, lambda: (0.0, 1.0))
+    assert (world.mode, world.gate.state) == (Mode.AUTONOMOUS, GateState.DRIVING)
+    assert said == ["commands come: autonomous mode engaged"] * 2
+
+
+def test_silence_in_manual_mode_is_no_alarm(world: World, said: list[str]) -> None:
+    now = _run(world, START, 1.0, lambda: (0.0, 1.0))
+    world.disengage()
+    _run(world, now, 2.0, None)
+    assert world.gate.state is GateState.BRAKING
+    assert said == ["commands come: autonomous mode engaged"]
+
+
+def test_stays_engaged_in_a_silence_when_it_is_asked_to(world: World) -> None:
+    now = _run(world, START, 1.0, lambda: (0.0, 1.0))
+    world.stay_engaged()
+    now = _run(world, now, 2.0, None)
+    assert (world.mode, world.gate.state) == (Mode.AUTONOMOUS, GateState.BRAKING)
+    _run(world, now, 0.2, lambda: (0.0, 1.0))
+    assert world.gate.state is GateState.DRIVING
+
+
+def test_status_tells_the_slope() -> None:
+    world = World(load_course("hill"), START)
+    world.plant.x += 50.0
+    now = _run(world, START, 0.5, None)
+    assert world.status(now)["slope"] == pytest.approx(0.08, abs=0.005)

@@ -42,6 +42,13 @@ engaged when commands come. When they stop coming the vehicle brakes, as Autowar
         help="drive about this long: as many laps as fit, or a part of the course",
     )
     parser.add_argument("--no-engage", action="store_true", help="leave the operation mode at STOP")
+    parser.add_argument(
+        "--console",
+        action="store_true",
+        help="obey lines on standard input: engage, disengage, stay (engaged when commands stop "
+        "coming, as Autoware does), nan and number (the odometry), freeze TOPIC, thaw TOPIC, end; "
+        "the topics go on after the drive, until the input is closed",
+    )
     options.add_network(parser)
     options.add_duration(parser, 0.0)
     options.add_json(parser, "status and summary")
@@ -55,6 +62,7 @@ def execute(arguments: argparse.Namespace) -> int:
         )
     with StopAtOnce() as start:
         from safety_island.platform import load
+        from safety_island.sim.console import Console
         from safety_island.sim.main_compute import MainComputeOptions, run
 
         chosen = MainComputeOptions(
@@ -70,4 +78,5 @@ def execute(arguments: argparse.Namespace) -> int:
         report = JsonLines(tell_lost).write if arguments.json else None
         with platform.on_stop(stop.set):
             start.disarm()
-            return run(chosen, stop, platform.clock, report, tell)
+            console = Console(tell) if arguments.console else None
+            return run(chosen, stop, platform.clock, report, tell, console)

@@ -8,10 +8,12 @@ from typing import Any, Protocol
 
 from safety_island.cli.jsonlines import JsonLines
 from safety_island.cli.run_can import CanSide
+from safety_island.cli.status.names import guard_limits_of, input_name, verdict_of
 from safety_island.cli.tick_times import TickTimes
 from safety_island.control.records import Records
 from safety_island.control.status import LongitudinalState, MpcStatus
 from safety_island.node import Outcome, TickReport
+from safety_island.node.command_check import CommandCheck
 from safety_island.node.input import Input
 from safety_island.node.input_set import InputSet
 from safety_island.platform import Clock, Logger
@@ -23,6 +25,7 @@ class Observed(Protocol):
     clock: Clock
     logger: Logger
     inputs: InputSet
+    check: CommandCheck
 
 
 class RunReport:
@@ -61,7 +64,7 @@ class RunReport:
             self._take_published(report)
         if self._lines is not None:
             ages = sample_ages(self._node.inputs.items, self._node.clock.wall_ns())
-            values = tick_values(report, self._trace, ages)
+            values = tick_values(report, self._trace, ages) | guard_values(self._node.check)
             if self._can is not None:
                 values["can"] = self._can.take()
             self._lines.write("tick", values)
@@ -121,6 +124,11 @@ def sample_ages(inputs: Sequence[Input], wall_ns: int) -> dict[str, float]:
     }
 
 
+def guard_values(check: CommandCheck) -> dict[str, Any]:
+    """Return what the guard did with the command of the tick, and by which of its limits."""
+    return {"guard": verdict_of(check.verdict), "guard_limits": guard_limits_of(check.limits)}
+
+
 def tick_values(report: TickReport, trace: Records, ages: dict[str, float]) -> dict[str, Any]:
     """Return one tick as named values; lengths in m, angles in rad, times in s."""
     values: dict[str, Any] = {
@@ -129,6 +137,7 @@ def tick_values(report: TickReport, trace: Records, ages: dict[str, float]) -> d
         "detail": report.detail,
         "state": report.life.state.name,
         "reason": report.life.reason.name,
+        "subject": input_name(report.subject),
         "lateness_s": report.lateness_s,
         "skipped": report.skipped,
         "tick_s": report.tick_time_s,

@@ -31,6 +31,7 @@ from safety_island.messages.wire import Time
 from safety_island.node.transport import Publisher, Transport
 from safety_island.platform.interfaces import Clock
 from safety_island.platform.posix.clock import PosixClock
+from safety_island.sim.console import Console
 from safety_island.sim.courses import DEFAULT_COURSE, load_course
 from safety_island.sim.fit import fit
 from safety_island.sim.world import World
@@ -76,6 +77,10 @@ class MainCompute:
     def __init__(self, world: World, transport: Transport, clock: Clock) -> None:
         self.world, self.clock = world, clock
         self.refused = 0  # commands that are no Control, or not finite
+        self.nan_odometry = False
+        """Whether the position that is published is NaN."""
+        self.frozen: set[str] = set()
+        """Topics, by their keys, on which nothing is published."""
         self._transport = transport
         self._odometry = self._publisher(topics.ODOMETRY)
         self._steering = self._publisher(topics.STEERING)
@@ -111,15 +116,22 @@ class MainCompute:
             self._told_mode = world.mode
             mode = OperationMode(stamp, world.mode, world.mode is Mode.AUTONOMOUS)
             self._mode.write(encode_operation_mode(mode))
-        self._steering.write(encode_steering(Steering(stamp, plant.steering)))
         felt = (plant.acceleration, 0.0, 0.0, 0.0, 0.0, 0.0)
-        self._acceleration.write(encode_acceleration(Acceleration(stamp, BODY, *felt)))
         turning = (0.0, 0.0, plant.yaw_rate)
         odometry = Odometry(stamp, MAP, BODY, *world.pose(), plant.speed, 0.0, 0.0, *turning)
-        self._odometry.write(encode_odometry(odometry))
+        if self.nan_odometry:
+            odometry = odometry._replace(x=math.nan)
+        if topics.STEERING.key not in self.frozen:
+            self._steering.write(encode_steering(Steering(stamp, plant.steering)))
+        if topics.ACCELERATION.key not in self.frozen:
+            self._acceleration.write(encode_acceleration(Acceleration(stamp, BODY, *felt)))
+        if topics.ODOMETRY.key not in self.frozen:
+            self._odometry.write(encode_odometry(odometry))
 
     def publish_plan(self) -> None:
         """Publish the trajectory ahead."""
+        if topics.TRAJECTORY.key in self.frozen:
+            return
         stamp = Time.from_nanoseconds(self.clock.wall_ns())
         self._trajectory.write(encode_trajectory(stamp, MAP, self.world.planner.window()))
 
@@ -148,9 +160,12 @@ def run(
     clock: Clock | None = None,
     report: Report | None = None,
     say: Callable[[str], None] | None = None,
+    console: Console | None = None,
 ) -> int:
     """Run until the course is driven, time is up, or ``stop`` is set; return the exit code.
 
+    With a ``console`` the end of the drive is reported, autonomous mode is left, and the topics go
+    on until ``stop`` is set or the console is closed: whoever follows them can leave first.
     Raises ConfigurationError for an unknown course and for what DDS cannot use.
     """
     clock = clock or PosixClock()
@@ -169,40 +184,62 @@ def run(
     )
     end = start + options.duration_s if options.duration_s else float("inf")
     with MainCompute(world, participant, clock) as main_compute:
-        _loop(main_compute, participant, stop, end, report)
-    if report is not None:
-        report("summary", {**world.summary(), "refused_commands": main_compute.refused})
+        loop = _Loop(main_compute, participant, report, console)
+        loop.run(lambda now: stop.is_set() or loop.is_over(now, end))
+        if report is not None:
+            report("summary", {**world.summary(), "refused_commands": main_compute.refused})
+        if console is not None:
+            world.disengage()
+            loop.run(lambda now: stop.is_set() or console.is_closed)
     return 0
 
 
-def _loop(
-    main_compute: MainCompute,
-    participant: Participant,
-    stop: StopEvent,
-    end: float,
-    report: Report | None,
-) -> None:
-    """Publish on a fixed grid of the monotonic clock; take commands between."""
-    clock, world = main_compute.clock, main_compute.world
-    due = clock.monotonic_ns()
-    round_number = 0
-    while not stop.is_set():
-        if participant.wait(max(0, due - clock.monotonic_ns()) * 1e-9):
-            main_compute.take_command()
-        now_ns = clock.monotonic_ns()
-        if now_ns < due:
-            continue
-        now = now_ns * 1e-9
-        world.advance(now)
-        if now >= end or world.has_ended(now):
-            return
+class _Loop:
+    """Publishes on a fixed grid of the monotonic clock; takes commands between."""
+
+    def __init__(
+        self,
+        main_compute: MainCompute,
+        participant: Participant,
+        report: Report | None,
+        console: Console | None,
+    ) -> None:
+        self._main_compute, self._participant = main_compute, participant
+        self._report, self._console = report, console
+        self._round = 0
+
+    def is_over(self, now: float, end: float) -> bool:
+        """Whether the drive has come to its end at ``now`` [s], at ``end`` [s] the latest."""
+        console = self._console
+        if console is not None and (console.has_ended or console.is_closed):
+            return True
+        return now >= end or self._main_compute.world.has_ended(now)
+
+    def run(self, is_over: Callable[[float], bool]) -> None:
+        """Run until it is over."""
+        main_compute = self._main_compute
+        clock = main_compute.clock
+        due = clock.monotonic_ns()
+        while not is_over(clock.monotonic_ns() * 1e-9):
+            if self._participant.wait(max(0, due - clock.monotonic_ns()) * 1e-9):
+                main_compute.take_command()
+            if self._console is not None:
+                self._console.poll(main_compute)
+            now_ns = clock.monotonic_ns()
+            if now_ns >= due:
+                self._publish(now_ns * 1e-9)
+                due += PERIOD_NS * max(1, -(-(now_ns - due) // PERIOD_NS))
+
+    def _publish(self, now: float) -> None:
+        """Move the vehicle on to ``now`` [s] and publish; every PLAN_EVERY rounds the plan too."""
+        main_compute = self._main_compute
+        main_compute.world.advance(now)
         main_compute.publish_vehicle()
-        if round_number % PLAN_EVERY == 0:
+        if self._round % PLAN_EVERY == 0:
             main_compute.publish_plan()
-            if report is not None:
-                report("status", world.status(now))
-        round_number += 1
-        due += PERIOD_NS * max(1, -(-(now_ns - due) // PERIOD_NS))
+            if self._report is not None:
+                self._report("status", main_compute.world.status(now))
+        self._round += 1
 
 
 def _print(text: str) -> None:

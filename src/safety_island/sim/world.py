@@ -61,8 +61,24 @@ class World:
         self.advance(now)
         self.gate.offer(now, angle, acceleration)
         if self._engage and self.mode is Mode.STOP:
-            self.mode, self.gate.engaged = Mode.AUTONOMOUS, True
+            self._set_mode(Mode.AUTONOMOUS)
             self._say("commands come: autonomous mode engaged")
+
+    def engage(self) -> None:
+        """Engage autonomous mode with the next command, at once when commands come."""
+        self._engage = True
+
+    def disengage(self) -> None:
+        """Leave autonomous mode, and stay so although commands come."""
+        self._engage = False
+        self._set_mode(Mode.STOP)
+
+    def stay_engaged(self) -> None:
+        """Stay in autonomous mode when commands stop coming, as Autoware does."""
+        self._leave = False
+
+    def _set_mode(self, mode: Mode) -> None:
+        self.mode, self.gate.engaged = mode, mode is Mode.AUTONOMOUS
 
     def advance(self, now: float) -> None:
         """Move the vehicle on to ``now``, in whole steps."""
@@ -99,9 +115,10 @@ class World:
         if self.gate.state is before:
             return
         if self.gate.state is GateState.BRAKING:
-            self._say("commands stopped coming: braking")
+            if self.mode is Mode.AUTONOMOUS:  # in manual mode nobody waits for them
+                self._say("commands stopped coming: braking")
             if self._leave:
-                self.mode, self.gate.engaged = Mode.STOP, False
+                self._set_mode(Mode.STOP)
         elif before is GateState.BRAKING:
             self._say("commands are back")
 
@@ -131,6 +148,7 @@ class World:
             "acceleration": plant.acceleration,
             "steering": plant.steering,
             "lateral_error": place.lateral_error,
+            "slope": place.pitch,
             "max_lateral_error": metrics.max_lateral_error,
             "gate": self.gate.state.value,
             "operation_mode": self.mode.name,

@@ -8,12 +8,13 @@ import pytest
 
 from safety_island.cli.demo.events import DemoState
 from safety_island.cli.demo.judge import conditions
+from safety_island.cli.demo.machine_load import OtherWork
 from tests.cli.demo.samples import ISLAND_SUMMARY, VEHICLE_SUMMARY
 
 
 def judge(
     vehicle: dict[str, Any] | None = None, island: dict[str, Any] | None = None
-) -> dict[str, tuple[bool, str]]:
+) -> dict[str, tuple[bool | None, str]]:
     state = DemoState(
         vehicle_summary=VEHICLE_SUMMARY | (vehicle or {}),
         island_summary=ISLAND_SUMMARY | (island or {}),
@@ -66,3 +67,62 @@ def test_silent_processes_are_no_success() -> None:
     assert not any(condition.holds for condition in conditions(DemoState()))
     only_vehicle = DemoState(vehicle_summary=VEHICLE_SUMMARY)
     assert not conditions(only_vehicle)[-1].holds
+
+
+def test_a_tick_missed_on_a_busy_machine_is_told_as_such() -> None:
+    state = DemoState(
+        vehicle_summary=VEHICLE_SUMMARY,
+        island_summary=ISLAND_SUMMARY | {"missed_ticks": 2, "max_lateness_s": 0.31},
+    )
+    busy = conditions(state, others=OtherWork(1.6, 2))[-1]
+    assert (busy.verdict, busy.holds) == ("BUSY", False)
+    assert "400 ticks, 2 missed" in busy.text
+    assert "the machine was busy: other programs used 1.6 of 2 cores" in busy.text
+    assert "a tick was woken up to 310 ms late; end what keeps it busy" in busy.text
+    for others in (OtherWork(0.1, 2), None):
+        plain = conditions(state, others=others)[-1]
+        assert (plain.verdict, plain.holds) == ("FAILED", False)
+        assert "busy" not in plain.text
+
+
+def test_a_busy_machine_that_missed_nothing_is_no_matter() -> None:
+    state = DemoState(vehicle_summary=VEHICLE_SUMMARY, island_summary=ISLAND_SUMMARY)
+    last = conditions(state, others=OtherWork(2.0, 2))[-1]
+    assert (last.verdict, last.holds) == ("ok", True)
+
+
+def test_what_a_disturbed_drive_did_not_keep_is_not_judged() -> None:
+    state = DemoState(
+        vehicle_summary=VEHICLE_SUMMARY | {"on_course": False},
+        island_summary=ISLAND_SUMMARY,
+        was_acted_on=True,
+    )
+    found = {one.name: one for one in conditions(state)}
+    assert (found["on_course"].verdict, found["on_course"].holds) == ("-", None)
+    assert found["on_course"].text.endswith("not judged: keys disturbed the drive")
+    assert found["reached_speed"].holds
+
+
+def test_a_drive_that_a_busy_machine_interrupted_is_told_as_such() -> None:
+    late = {"silences": 2, "stopped_in_place": False, "stop_errors": [0.8]}
+    state = DemoState(
+        vehicle_summary=VEHICLE_SUMMARY | late, island_summary=ISLAND_SUMMARY | {"missed_ticks": 1}
+    )
+    found = {one.name: one for one in conditions(state, others=OtherWork(1.6, 2))}
+    stop, ticks = found["stopped_in_place"], found["no_missed_ticks"]
+    assert (stop.verdict, stop.holds, ticks.verdict) == ("BUSY", False, "BUSY")
+    assert "commands stopped coming 2 times\nthe machine was busy" in stop.text
+    assert "the machine was busy" not in ticks.text, "it is said once"
+    assert found["on_course"].verdict == "ok"
+    quiet = {one.name: one for one in conditions(state, others=OtherWork(0.1, 2))}
+    assert quiet["stopped_in_place"].verdict == "FAILED"
+
+
+def test_a_drive_that_went_wrong_by_itself_is_not_blamed_on_the_machine() -> None:
+    state = DemoState(
+        vehicle_summary=VEHICLE_SUMMARY | {"silences": 0, "on_course": False},
+        island_summary=ISLAND_SUMMARY,
+    )
+    first = conditions(state, others=OtherWork(1.6, 2))[0]
+    assert (first.verdict, first.holds) == ("FAILED", False)
+    assert "busy" not in first.text

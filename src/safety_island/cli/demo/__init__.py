@@ -7,22 +7,33 @@ import json
 import math
 import signal
 import sys
+import time
+from contextlib import ExitStack
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from safety_island.cli import options
-from safety_island.cli.demo.children import bridge_child, island_child, vehicle_child
-from safety_island.cli.demo.events import DemoState
+from safety_island.cli.demo.actions import Actions, Reactions, Recipes
+from safety_island.cli.demo.child import Child
+from safety_island.cli.demo.children import arm_child, bridge_child, island_child, vehicle_child
+from safety_island.cli.demo.events import ISLAND, SECOND_ISLAND, DemoState
 from safety_island.cli.demo.judge import Condition, conditions
+from safety_island.cli.demo.keyboard import Keyboard
+from safety_island.cli.demo.machine_load import other_work, usage
+from safety_island.cli.demo.plot import plot
+from safety_island.cli.demo.record import Recorder, open_output
 from safety_island.cli.demo.session import Session
 from safety_island.cli.demo.show import PlainShow, TerminalShow
 from safety_island.cli.domains import pairs_from, reserve
 from safety_island.cli.parameters import read_parameters
 from safety_island.cli.parser import UsageError, teach
 from safety_island.cli.run_settings import HOSTED
+from safety_island.cli.stopping import StopFlag
 from safety_island.errors import IslandError
+from safety_island.params import IslandParameters
 from safety_island.platform.signals import stop_signals
 from safety_island.sim.courses import COURSES, DEFAULT_COURSE, load_course
+from safety_island.sim.fit import fit
 
 GRACE_S = 10.0
 """A drive that takes this much longer [s] than planned is ended."""
@@ -39,12 +50,16 @@ def configure(parser: argparse.ArgumentParser) -> None:
 Watch the safety island drive a vehicle. Three processes on this machine, over loopback: a main
 compute with a planner and a vehicle on one DDS domain, the island on another, a bridge between
 them. Exit code 0 only when the vehicle stayed on the course, reached its speed, stopped where the
-planner said, and no tick was missed.
+planner said, and no tick was missed. In a terminal keys disturb the drive and show the reaction:
+space disengages and engages, k kills the bridge, n makes the odometry NaN, f freezes a topic, 2
+starts a second island (each of them once more clears it), a arms the island, q ends. A drive that
+keys disturbed is judged by what it kept all the same.
 """,
         ("island demo", "the s-curve, about a minute"),
         ("island demo --course u-turn --period 0.03", "another course, at Autoware's own period"),
         ("island demo --target freertos_posix", "with CAN output: frames beside the commands"),
-        ("island demo --duration 0", "lap after lap, until Ctrl-C"),
+        ("island demo --duration 0", "lap after lap, until q or Ctrl-C"),
+        ("island demo --log drive.csv --plot drive.svg", "with a table and a picture of the drive"),
         ("island demo --plain", "plain lines, as when the output is no terminal"),
     )
     parser.add_argument(
@@ -77,7 +92,21 @@ planner said, and no tick was missed.
         metavar="TAG",
         help="tag of the island's domain: who has another one, or none, is no part of it",
     )
-    parser.add_argument("--plain", action="store_true", help="plain lines instead of a live view")
+    parser.add_argument(
+        "--log",
+        type=Path,
+        metavar="FILE",
+        help="write the drive as CSV, ten rows a second, with units in the header",
+    )
+    parser.add_argument(
+        "--plot",
+        type=Path,
+        metavar="FILE",
+        help="write a picture of the drive as SVG: path, lateral error, speed, angle, guard",
+    )
+    parser.add_argument(
+        "--plain", action="store_true", help="plain lines instead of a live view, no keys"
+    )
     options.add_json(parser, "the summary")
 
 
@@ -85,50 +114,149 @@ def execute(arguments: argparse.Namespace) -> int:
     """Run the demo; 0 when all went well."""
     if arguments.domains is not None and len(set(arguments.domains)) == 1:
         raise UsageError("--domains: found the same domain twice; a bridge needs two")
-    read_parameters(arguments.params, arguments.period)  # a mistake is told before anything starts
-    _prepare()
-    for number in stop_signals():
-        signal.signal(number, signal.default_int_handler)
-    wanted = pairs_from(*DOMAINS) if arguments.domains is None else [tuple(arguments.domains)]
-    with reserve(wanted) as pair:
-        if pair is None:
-            raise IslandError(_in_use(arguments.domains))
-        if arguments.domains is None and pair != DOMAINS:
-            _note(f"DDS domains 1 and 2 are in use on this machine; taking {pair[0]} and {pair[1]}")
-        return _run(arguments, (pair[0], pair[1]))
+    # a mistake is told before anything starts
+    parameters = read_parameters(arguments.params, arguments.period).parameters
+    if arguments.plot is not None:
+        open_output(arguments.plot).close()
+    with Recorder(arguments.log, keep=arguments.plot is not None) as recorder:
+        _prepare()
+        wanted = pairs_from(*DOMAINS) if arguments.domains is None else [tuple(arguments.domains)]
+        with reserve(wanted) as pair:
+            if pair is None:
+                raise IslandError(_in_use(arguments.domains))
+            if arguments.domains is None and pair != DOMAINS:
+                _note(
+                    "DDS domains 1 and 2 are in use on this machine;"
+                    f" taking {pair[0]} and {pair[1]}"
+                )
+            return _run(arguments, parameters, (pair[0], pair[1]), recorder)
 
 
-def _run(arguments: argparse.Namespace, domains: tuple[int, int]) -> int:
-    interrupted = False
-    with TemporaryDirectory() as folder, _display(arguments, domains) as show:
-        main, island = domains
-        children = [
-            island_child(
-                island, arguments.params, arguments.period, arguments.target, arguments.domain_tag
-            ),
-            bridge_child(domains, Path(folder), arguments.domain_tag),
-            vehicle_child(main, arguments.course, arguments.duration),
-        ]
+def _run(
+    arguments: argparse.Namespace,
+    parameters: IslandParameters,
+    domains: tuple[int, int],
+    recorder: Recorder,
+) -> int:
+    stop = _Interrupt()
+    before = usage()
+    with TemporaryDirectory() as folder:
+        recipe = _Recipe(arguments, domains, Path(folder))
+        has_keys = _has_keys(arguments)
         limit_s = arguments.duration + GRACE_S if arguments.duration else math.inf
-        session = Session(children, show, limit_s)
-        try:
-            session.run()
-        except KeyboardInterrupt:
-            interrupted = True
-    found = conditions(session.state, interrupted)
-    _tell(found, session.state, arguments.json)
-    if interrupted and arguments.duration:
+        with _display(arguments, domains, has_keys=has_keys) as show:
+            children = [recipe.island(), recipe.bridge(), recipe.vehicle()]
+            session = Session(children, show, limit_s, stop)
+            session.state.on_status.append(recorder)
+            with ExitStack() as stack:
+                if has_keys and isinstance(show, TerminalShow):
+                    keyboard = Keyboard(sys.stdin.fileno(), show.suspend, show.resume)
+                    session.keyboard = stack.enter_context(keyboard)
+                    _connect_keys(session, recipe, parameters)
+                session.run()
+    state = session.state
+    if arguments.plot is not None:
+        title = f"island demo: {arguments.course}"
+        _write(arguments.plot, plot(recorder.rows, state.events, title))
+    if stop.is_set() and not state.has_driven:
+        return _nothing_to_judge(stop, state, arguments.json)
+    found = conditions(state, stop.is_set(), other_work(before, usage()))
+    _tell(found, state, arguments.json)
+    if stop.was_signal and arguments.duration:
         return 128 + signal.SIGINT
-    return 0 if all(condition.holds for condition in found) else 1
+    return 1 if any(condition.holds is False for condition in found) else 0
 
 
-def _display(arguments: argparse.Namespace, domains: tuple[int, int]) -> PlainShow | TerminalShow:
+class _Interrupt(StopFlag):
+    """Set by a signal that asks to end, or by a key."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.was_signal = False
+        for number in stop_signals():
+            signal.signal(number, self._on_signal)
+
+    def _on_signal(self, *_: object) -> None:
+        self.was_signal = True
+        self.set()
+
+
+class _Recipe:
+    """Makes the processes of the demo, not started."""
+
+    def __init__(
+        self, arguments: argparse.Namespace, domains: tuple[int, int], folder: Path
+    ) -> None:
+        self._arguments, self._folder = arguments, folder
+        self._domains = domains
+
+    def island(self, name: str = ISLAND) -> Child:
+        """The safety island, or another one of that name."""
+        given = self._arguments
+        domain, tag = self._domains[1], given.domain_tag
+        return island_child(domain, given.params, given.period, given.target, tag, name)
+
+    def second_island(self) -> Child:
+        """A second island on the island's domain."""
+        return self.island(SECOND_ISLAND)
+
+    def bridge(self) -> Child:
+        """The bridge."""
+        return bridge_child(self._domains, self._folder, self._arguments.domain_tag)
+
+    def vehicle(self) -> Child:
+        """The main compute."""
+        return vehicle_child(self._domains[0], self._arguments.course, self._arguments.duration)
+
+    def arm(self) -> Child:
+        """The request to arm."""
+        return arm_child(self._domains[1], self._arguments.domain_tag)
+
+
+def _connect_keys(session: Session, recipe: _Recipe, parameters: IslandParameters) -> None:
+    actions = Actions(session, Recipes(recipe.bridge, recipe.second_island, recipe.arm))
+    reactions = Reactions(session.state, parameters)
+
+    def on_keys(keys: str) -> None:
+        for key in keys:
+            now = time.monotonic()
+            if actions.press(key):
+                reactions.pressed(-math.inf if key == "q" else now)
+
+    session.on_keys, session.look = on_keys, reactions.look
+
+
+def _has_keys(arguments: argparse.Namespace) -> bool:
+    """Whether the live view is shown to somebody who has a keyboard."""
+    return not (arguments.json or arguments.plain) and sys.stdout.isatty() and sys.stdin.isatty()
+
+
+def _display(
+    arguments: argparse.Namespace, domains: tuple[int, int], *, has_keys: bool
+) -> PlainShow | TerminalShow:
     if arguments.json:
         return PlainShow(sys.stderr)
     if arguments.plain or not sys.stdout.isatty():
         return PlainShow(sys.stdout)
     title = f"safety island — {arguments.course} — domains {domains[0]} and {domains[1]}"
-    return TerminalShow(load_course(arguments.course), title)
+    course = load_course(arguments.course)
+    if arguments.duration:
+        course, _ = fit(course, arguments.duration)  # as the main compute drives it
+    return TerminalShow(course, title, has_keys=has_keys)
+
+
+def _write(path: Path, text: str) -> None:
+    with open_output(path) as file:
+        file.write(text)
+
+
+def _nothing_to_judge(stop: _Interrupt, state: DemoState, as_json: bool) -> int:
+    """Say that the demo was ended during its start; return the exit code."""
+    if as_json:
+        print(json.dumps(_summary([], state) | {"ok": None}, indent=2))
+    else:
+        print("ended during the start: nothing was driven, so there is nothing to judge")
+    return 128 + signal.SIGINT if stop.was_signal else 0
 
 
 def _tell(found: list[Condition], state: DemoState, as_json: bool) -> None:
@@ -136,14 +264,15 @@ def _tell(found: list[Condition], state: DemoState, as_json: bool) -> None:
         print(json.dumps(_summary(found, state), indent=2))
         return
     for condition in found:
-        print(f"{'ok' if condition.holds else 'FAILED':>6}  {condition.text}")
+        text = condition.text.replace("\n", "\n" + " " * 8)
+        print(f"{condition.verdict:>6}  {text}")
     if state.first_control_s is not None:
         print(f"        first Control {state.first_control_s:.2f} s after the island's start")
 
 
 def _summary(found: list[Condition], state: DemoState) -> dict[str, object]:
     return {
-        "ok": all(condition.holds for condition in found),
+        "ok": all(condition.holds is not False for condition in found),
         "conditions": {condition.name: condition.holds for condition in found},
         "first_control_s": state.first_control_s,
         "vehicle": state.vehicle_summary,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import json
 import os
@@ -49,13 +50,15 @@ class Child:
     program: Sequence[str] = (sys.executable, "-m", "safety_island")
     said: list[str] = field(default_factory=list)
     """Lines of its standard error."""
+    is_controlled: bool = False
+    """Whether it obeys lines on its standard input."""
 
     def start(self) -> None:
         """Start it; it ends when this process does, however that comes about."""
         environment = {k: v for k, v in os.environ.items() if k != "CYCLONEDDS_URI"}
         self.process = subprocess.Popen(
             [*self.program, *self.arguments],
-            stdin=subprocess.DEVNULL,
+            stdin=subprocess.PIPE if self.is_controlled else subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
             env=environment,
@@ -82,6 +85,12 @@ class Child:
             else:
                 yield event
 
+    def say(self, line: str) -> None:
+        """Write a line to its standard input; one that has ended does not read it."""
+        if self.process.stdin is not None:
+            with contextlib.suppress(OSError):
+                os.write(self.process.stdin.fileno(), line.encode() + b"\n")
+
     @property
     def exit_code(self) -> int | None:
         """None while it runs."""
@@ -91,6 +100,10 @@ class Child:
         """Ask it to end; one that has ended is left alone."""
         if self.exit_code is None:
             self.process.send_signal(signal.SIGTERM)
+
+    def kill(self) -> None:
+        """End it at once."""
+        self.process.kill()
 
     def wait(self, limit_s: float = STOP_LIMIT_S) -> int:
         """Wait for its end, or kill it after the limit; return its exit code."""
@@ -102,8 +115,9 @@ class Child:
 
     def close(self) -> None:
         """Give the pipes back."""
-        for stream in self.streams:
-            stream.close()
+        for stream in (self.process.stdin, *self.streams):
+            if stream is not None:
+                stream.close()
 
 
 def how_it_ended(exit_code: int) -> str:

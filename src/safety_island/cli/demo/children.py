@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from safety_island.cli.demo.child import Child
-from safety_island.cli.demo.events import BRIDGE, ISLAND, VEHICLE
+from safety_island.cli.demo.events import ARM, BRIDGE, ISLAND, VEHICLE
 from safety_island.dds.topics import BRIDGED, MAIN_COMPUTE_DOMAIN
 
 LOOPBACK = ("--interface", "lo")
@@ -18,12 +18,13 @@ def island_child(
     period_s: float | None,
     target: str = "posix",
     tag: str | None = None,
+    name: str = ISLAND,
 ) -> Child:
     """Return the safety island, not started."""
     run = ["run", "--domain", str(domain), "--target", target, "--params", *params]
     if period_s is not None:
         run += ["--period", repr(period_s)]
-    return Child(ISLAND, [*run, *_tagged(tag), *LOOPBACK, "--json"])
+    return Child(name, [*run, *_tagged(tag), *LOOPBACK, "--json"])
 
 
 def bridge_child(domains: tuple[int, int], folder: Path, tag: str | None = None) -> Child:
@@ -38,7 +39,12 @@ def vehicle_child(domain: int, course: str, time_s: float) -> Child:
     """Return the main compute; it drives about ``time_s`` [s], for 0 lap after lap."""
     drive = ["main-compute", "--domain", str(domain), "--course", course]
     drive += ["--within", repr(time_s)] if time_s else ["--repeat"]
-    return Child(VEHICLE, [*drive, *LOOPBACK, "--json"])
+    return Child(VEHICLE, [*drive, *LOOPBACK, "--console", "--json"], is_controlled=True)
+
+
+def arm_child(domain: int, tag: str | None = None) -> Child:
+    """Return the request to arm the island, not started."""
+    return Child(ARM, ["arm", "--domain", str(domain), *_tagged(tag), *LOOPBACK])
 
 
 def _tagged(tag: str | None) -> list[str]:

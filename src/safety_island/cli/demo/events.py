@@ -2,13 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 Event = Mapping[str, Any]
 
 ISLAND, BRIDGE, VEHICLE = "island", "bridge", "main-compute"
+SECOND_ISLAND, ARM = "second island", "arm"
+"""What a key starts."""
+
+MOST_TRAIL = 4000
+"""Places of the vehicle that are kept; beyond that every other one is left out."""
+
+
+class KeyEvent(NamedTuple):
+    """A key that was pressed, or a reaction."""
+
+    time_s: float
+    """Of the drive."""
+    text: str
+    is_reaction: bool = False
 
 
 @dataclass
@@ -27,6 +41,15 @@ class DemoState:
     """From the start of the island's process to its first command."""
     messages: list[str] = field(default_factory=list)
     """What the processes logged, newest last."""
+    events: list[KeyEvent] = field(default_factory=list)
+    """Keys and reactions."""
+    trail: list[tuple[float, float]] = field(default_factory=list)
+    """Station and lateral error [m] of where the vehicle was in this lap."""
+    has_driven: bool = False
+    was_acted_on: bool = False
+    """Whether a person disturbed the drive by a key."""
+    on_status: list[Callable[[DemoState], None]] = field(default_factory=list, compare=False)
+    """Called at each status of the vehicle."""
 
     def update(self, source: str, event: Event) -> None:
         """Take one event; one that is not known is passed over."""
@@ -35,11 +58,28 @@ class DemoState:
             self._update_island(kind, event)
         elif source == VEHICLE:
             if kind == "status":
-                self.vehicle = event
+                self._update_vehicle(event)
             elif kind == "summary":
                 self.vehicle_summary = event
         elif kind == "counts":
             self.forwarded = int(event["forwarded"])
+
+    def add_event(self, text: str, *, is_reaction: bool = False) -> None:
+        """Note a key or a reaction at this moment of the drive."""
+        time_s = float(self.vehicle.get("time_s", 0.0))
+        self.events.append(KeyEvent(time_s, text, is_reaction))
+
+    def _update_vehicle(self, event: Event) -> None:
+        if event.get("lap") != self.vehicle.get("lap"):
+            self.trail.clear()
+        self.vehicle = event
+        self.has_driven = self.has_driven or self.is_driving
+        if self.has_driven:
+            self.trail.append((float(event["station"]), float(event["lateral_error"])))
+            if len(self.trail) > MOST_TRAIL:
+                del self.trail[::2]
+        for observer in self.on_status:
+            observer(self)
 
     def _update_island(self, kind: object, event: Event) -> None:
         if kind == "tick":

@@ -18,11 +18,15 @@ PLAIN_EVERY_S = 1.0
 
 
 class TerminalShow:
-    """Redraws the view in place."""
+    """Redraws the view in place, in the size that the window has at that moment."""
 
-    def __init__(self, course: Course, title: str) -> None:
-        self._view = View(course, title)
-        self._live = Live(console=Console(), auto_refresh=False)
+    def __init__(
+        self, course: Course, title: str, console: Console | None = None, *, has_keys: bool = False
+    ) -> None:
+        self._view = View(course, title, has_keys=has_keys)
+        self._console = console or Console()
+        self._live = Live(console=self._console, auto_refresh=False)
+        self._size = self._console.size
 
     def __enter__(self) -> TerminalShow:
         self._live.start()
@@ -33,7 +37,19 @@ class TerminalShow:
 
     def __call__(self, state: DemoState) -> None:
         """Draw."""
-        self._live.update(self._view.draw(state), refresh=True)
+        size = self._console.size
+        if size != self._size:  # lines of the old width have been wrapped or cut
+            self._size = size
+            self._console.clear()
+        self._live.update(self._view.draw(state, *size), refresh=True)
+
+    def suspend(self) -> None:
+        """Leave the terminal to others for a while."""
+        self._console.show_cursor(True)
+
+    def resume(self) -> None:
+        """Have the terminal back."""
+        self._console.show_cursor(False)
 
 
 class PlainShow:

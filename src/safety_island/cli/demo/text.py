@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from safety_island.cli.demo.events import DemoState
+import math
+
+from safety_island.cli.demo.events import DemoState, KeyEvent
 
 UNKNOWN = "-"
 
@@ -32,6 +34,10 @@ def waiting_for(state: DemoState) -> str:
         return "the island to start"
     if not state.vehicle:
         return "the main compute to start"
+    if state.was_acted_on and state.tick["state"] == "SILENT":
+        return "the cause of the silence to go, then key a to arm"
+    if state.was_acted_on and state.vehicle["operation_mode"] != "AUTONOMOUS":
+        return "key space to engage"
     if state.tick["outcome"] != "PUBLISHED":
         return str(state.tick["detail"]) or str(state.tick["outcome"])
     return "the vehicle to take commands"
@@ -43,6 +49,31 @@ def command(state: DemoState) -> str:
         return ""
     angle, acceleration = state.tick["steering_tire_angle"], state.tick["acceleration"]
     return f"{angle:+.3f} rad, {acceleration:+.2f} m/s²"
+
+
+def island(state: DemoState) -> str:
+    """Return the state of the island."""
+    return str(state.tick.get("state", UNKNOWN))
+
+
+def guard(state: DemoState) -> str:
+    """Return what the guard did with the newest command, and by which limits."""
+    limits = ", ".join(state.tick.get("guard_limits", ()))
+    return f"guard {limits or str(state.tick.get('guard') or 'not asked').lower()}"
+
+
+def target(state: DemoState) -> str:
+    """Return where the vehicle has to stop next."""
+    stop = state.vehicle.get("stop_station")
+    if stop is None:
+        return UNKNOWN
+    return f"◎ stop in {max(0.0, stop - state.vehicle['station']):.0f} m"
+
+
+def slope(state: DemoState) -> str:
+    """Return the slope of the road at the vehicle."""
+    angle = state.vehicle.get("slope")
+    return UNKNOWN if angle is None else f"slope {100.0 * math.tan(angle):+.1f} %"
 
 
 def can_command(state: DemoState) -> str:
@@ -58,6 +89,11 @@ def can_number(state: DemoState) -> str:
     """Return the sequence number of the newest CAN frames; nothing without frames."""
     number = (state.tick.get("can") or {}).get("sequence")
     return "" if number is None else f"#{number}"
+
+
+def event_line(event: KeyEvent) -> str:
+    """Return one line about a key, or below it about a reaction."""
+    return f"{event.time_s:6.1f} s  {'  ' if event.is_reaction else ''}{event.text}"
 
 
 def plain_line(state: DemoState) -> str:
