@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every test on disk is run by pytest, and every Python file is seen by format and lint."""
 
 from __future__ import annotations

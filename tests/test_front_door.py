@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The script ``./island``: makes .venv once, repairs it when needed, says what is missing.
 
 A stand-in for uv makes the environment here, so no test needs the network.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The lock files fit pyproject.toml and each other, and name no host and no path."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A folder whose content may be run: whose it is, who could have written, what it leads through."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What stands around the sources: licence lines, citation, security, addresses."""
 
 from __future__ import annotations

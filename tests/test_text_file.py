@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Text files of others: what is read, and why one is not."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What hatchling asks of this project: metadata, and the kernels inside a platform wheel.
 
 A plain wheel is for any machine and needs the compiler of the kernels. When the environment

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Autoware's trajectory follower on a safety island: MPC and PID over DDS and CAN.
 
 ``from safety_island import drive, load_course``: the Python interface is that of

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The command ``island``, also as ``python -m safety_island``."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The optional parts of an installation, and what to say of one that is missing."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How one parameter is declared: its key, unit, meaning and what is allowed."""
 
 from __future__ import annotations

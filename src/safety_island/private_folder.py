@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Folders that nobody but their owner can change: what lies in one may be run.
 
 Compiled code is unpickled and unpacked programs are imported, so whoever can write there runs code

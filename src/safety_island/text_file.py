@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Small text files that somebody else wrote: read with a limit, as UTF-8."""
 
 from __future__ import annotations

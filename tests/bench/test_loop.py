@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``island bench loop``: a short live measurement, and what it refuses."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The tick bench: what it measures, and that it leaves the process as it was."""
 
 from __future__ import annotations

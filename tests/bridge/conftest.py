@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A bridge, its neighbours on loopback, and a loop that drives it until something happened."""
 
 from __future__ import annotations

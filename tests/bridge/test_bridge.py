@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The bridge on loopback: samples pass as they are, once, in both directions."""
 
 from __future__ import annotations

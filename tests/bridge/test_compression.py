@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Compressed samples: the bytes of ROS 2's bridge, and no trust in what comes back."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The bridge file: the whole schema, and every complaint with file and line."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What ends on one side of the bridge has ended beyond it."""
 
 from __future__ import annotations

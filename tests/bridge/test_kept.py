@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """To which publishers a route keeps."""
 
 from __future__ import annotations

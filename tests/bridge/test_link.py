@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """When a route opens, closes, and what it tells a user."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The QoS of both ends of a route from its entry and from the publishers that are there."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A publisher that joins, leaves, or sends nothing disturbs nobody who was heard."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A topic that keeps to one publisher: others raise an alarm and do not get through."""
 
 from __future__ import annotations

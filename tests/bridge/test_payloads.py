@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What passes: types that nobody here knows, compressed samples, and nothing that is broken."""
 
 from __future__ import annotations

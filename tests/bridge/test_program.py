@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The bridge as a program: it starts, reports, survives kill -9 of another, and ends when told."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The effective routes of bridge files, and what is refused."""
 
 from __future__ import annotations

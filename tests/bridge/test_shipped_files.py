@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The shipped bridge file and CycloneDDS configuration."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A copy of the shipped configuration that a test may change; builds that tests share."""
 
 import fcntl

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every golden run through the controllers: ``python -m tests.build.fingerprint``, for a process.
 
 Prints JSON: a hash of all commands and traces of each run, and the modules of a compiler that were

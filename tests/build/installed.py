@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Installs a wheel as a user would, outside the checkout, with the packages that are here."""
 
 from __future__ import annotations

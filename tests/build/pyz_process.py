@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Starts self-contained programs as a second machine would: bare Python, nothing of this tree."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Kernels taken from a library: the same bits, no compiler, refusals that a user understands."""
 
 from __future__ import annotations

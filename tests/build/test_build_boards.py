@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is made for the two Arm boards: objects without strange symbols, archive, header."""
 
 from __future__ import annotations

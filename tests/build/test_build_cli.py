@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``build.sh`` and ``island build``: flags, refusals, what is made, what is not made again."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Compiling kernels: what does not compile is named with its cause, and twice gives the same."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The three test programs as they are built: against each other, and a peer that is not ours."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The self-contained program: it starts on bare Python, needs no compiler, and is reproducible."""
 
 from __future__ import annotations

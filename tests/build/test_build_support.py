@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Routines that stand in for instructions a 32-bit processor lacks, run on this one."""
 
 from __future__ import annotations

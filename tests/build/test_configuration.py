@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The configuration as the program uses it: each symbol counts, and texts are checked."""
 
 from ipaddress import IPv4Address, IPv4Interface

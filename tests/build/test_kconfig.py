@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The merge of fragments: contract values, order, and what is refused, with its place."""
 
 from pathlib import Path

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The menu: a stand-in that changes symbols, and the real one on a pseudo-terminal."""
 
 import os

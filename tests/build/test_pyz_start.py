@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The start of a self-contained program: what it unpacks, when, and what it refuses."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The table of targets, and its agreement with the other tables that name them."""
 
 import pytest

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is built works where it is installed: wheel, sdist, and the wheel with kernels inside."""
 
 from __future__ import annotations

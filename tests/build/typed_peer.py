@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A peer that is not ours: typed CycloneDDS, with message classes written out by hand.
 
 ``python typed_peer.py listen DOMAIN`` prints what it reads of two inputs of the island;

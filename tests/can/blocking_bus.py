@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A device that blocks when it is told to, as a driver does that ignores its time-out."""
 
 from __future__ import annotations

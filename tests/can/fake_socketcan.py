@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What python-can sees of SocketCAN, where the kernel has none: sockets, a bus, error frames.
 
 A socket pair stands for each raw CAN socket, so the bytes of ``struct can_frame``, waiting for

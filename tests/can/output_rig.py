@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """CAN output on the mock bus, on a clock that stands still between ticks."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """For each backend that this machine can open: a bus, and somebody at its other end."""
 
 from __future__ import annotations

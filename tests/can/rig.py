@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the tests of CAN output share: commands, a clock, a log, waiting for events."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The other end of a serial line: an adapter that speaks the Lawicel protocol over a real pty."""
 
 from __future__ import annotations

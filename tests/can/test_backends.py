@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The table of backends: what is imported when, names and options that do not exist."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The delivery of one command to a device."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What exceptions and error frames of python-can mean."""
 
 from __future__ import annotations

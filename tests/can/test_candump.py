@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The text forms of can-utils."""
 
 from __future__ import annotations

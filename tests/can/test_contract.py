@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What every CAN backend promises; each test runs on each backend that this machine can open.
 
 ``udp_multicast`` joins in a network namespace of its own: see ``test_udp_multicast``.

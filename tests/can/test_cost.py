@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a command costs, against the yardstick measured in the same run."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The DBC file: current, what cantools makes of it, and every mutation of it is found (row 70)."""
 
 from __future__ import annotations

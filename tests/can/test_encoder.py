@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The encoder, against values worked out by hand and against exact arithmetic."""
 
 from __future__ import annotations

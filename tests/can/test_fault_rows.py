@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Rows of the fault catalogue that concern CAN output; the number of each stands in its test."""
 
 from __future__ import annotations

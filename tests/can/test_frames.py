@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The table of frames is what the contract says, and sound in itself."""
 
 from __future__ import annotations

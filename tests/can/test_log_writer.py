@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The log of what was sent: what other tools read of it, and a disk that is full or slow."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the monitor finds in a stream of frames, worked out by hand."""
 
 from __future__ import annotations

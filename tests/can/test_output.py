@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """CAN output: modes, sequence, counting, the log, and the record of what left."""
 
 from __future__ import annotations

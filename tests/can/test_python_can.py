@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The device over python-can, with a driver that does what a test wants."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The receiver's side: complete triples with an advancing sequence, and when they are lost."""
 
 from __future__ import annotations

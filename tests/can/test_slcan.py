@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A serial adapter over a real line: its bytes, a line that is stuck, a plug that is pulled."""
 
 from __future__ import annotations

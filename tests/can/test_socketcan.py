@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """SocketCAN through python-can, over the fake kernel: error frames, full queue, interface down."""
 
 from __future__ import annotations

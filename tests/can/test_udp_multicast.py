@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The bus over UDP between processes, in a network namespace of its own."""
 
 from __future__ import annotations

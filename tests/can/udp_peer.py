@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A process at the other end of a ``udp_multicast`` bus.
 
 Lines of the standard input are frames to send, lines of the standard output frames that came.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``island arm`` against something that answers in place of an island, over DDS on loopback."""
 
 from __future__ import annotations

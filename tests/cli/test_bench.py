@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``island bench tick``: what it prints and what it takes; how long a tick is, no test says."""
 
 from __future__ import annotations

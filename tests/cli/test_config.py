@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``island config`` and ``island menuconfig``: what they print and how they refuse."""
 
 from __future__ import annotations

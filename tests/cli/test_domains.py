@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Domain ids that somebody uses are seen, whichever way a participant was configured."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``island env`` prints what a shell can evaluate."""
 
 from __future__ import annotations

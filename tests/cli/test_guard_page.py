@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The page docs/guard.md is what the guard's code says."""
 
 from __future__ import annotations

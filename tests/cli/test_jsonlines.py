@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """JSON lines never wait for their reader."""
 
 from __future__ import annotations

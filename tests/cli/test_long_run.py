@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A long run in virtual time, observed as ``island run`` observes it, takes no more memory.
 
 ``SAFETY_ISLAND_LONG_TICKS=1000000`` makes it as long as nine hours at 30 ms.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The frame of the command line: help, errors in one line, exit codes."""
 
 from __future__ import annotations

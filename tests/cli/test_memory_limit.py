@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A start with too little memory to be had ends with one line, before a library can hang on it."""
 
 from __future__ import annotations

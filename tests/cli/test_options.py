@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Shared options refuse what cannot be used, and say what can."""
 
 from __future__ import annotations

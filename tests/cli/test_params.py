@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``island params`` shows every value with its origin and tells every mistake of a file."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The first compilation says what it does; loading compiled code leaves nothing behind."""
 
 from __future__ import annotations

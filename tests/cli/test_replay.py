@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``island replay``: verdicts for people and scripts, CSV files, exit codes."""
 
 from __future__ import annotations

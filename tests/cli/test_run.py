@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``island run`` as a process: refuses what cannot work, waits, reports, ends when told to."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``island run`` with CAN: frames beside commands, logs, and what happens without a bus."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What ``island run`` logs follows LOG_LEVEL, LOG_THROTTLE_RATE, DDS_LOG_LEVEL and --log-json."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Options and configuration of ``island run``: each does something or is refused."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Network and time before anything else; a failure ends the start in one line."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """SIGINT, SIGTERM and SIGHUP end a command that starts up, whatever it is doing."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Standard streams that are closed or full, and an interrupt before the command is there."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Statistics of a run: as good as a list of all times, in memory that does not grow."""
 
 from __future__ import annotations

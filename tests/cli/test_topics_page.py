@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The page docs/topics.md is what the table of topics says."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The MPC's models and quadratic programme written down with dense matrices, to compare with.
 
 Nothing here is shared with the controller: models in continuous time, the bilinear transform by a

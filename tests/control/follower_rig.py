@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A follower that drives, what it remembers, and whether that is made of numbers."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Inputs that must be refused: every field of every message, each as its own case."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The lateral controller on a path of the test's own, for tests that set one thing at a time."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A longitudinal controller on a straight road, for tests that set one thing at a time."""
 
 from __future__ import annotations

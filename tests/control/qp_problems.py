@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Quadratic programmes for the solver tests: recorded ones and seeded families of hard ones."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A tick makes no array: not for its inputs, not in the controllers, not for its command."""
 
 from __future__ import annotations

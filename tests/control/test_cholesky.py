@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The Cholesky factor and the unconstrained solve against NumPy."""
 
 from typing import Any

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """H and f of the MPC against a construction with dense matrices, over random drives."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Memories of the lateral wrapper: commands of a second, ends of trajectories, convergence."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The active-set solver by itself: its factor of the working set, and its own way to infeasible."""
 
 from typing import Any

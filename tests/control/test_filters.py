@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Low passes: the moving average over the path and the second-order Butterworth filter."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The join of both controllers: readiness, tick, and what no input may do."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Whatever comes in within its bounds, what goes out and what is remembered are numbers."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What no input may do to the follower: touch its memory, stop it, make it grow."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is refused at the gate of the controllers, and with which reason."""
 
 from __future__ import annotations

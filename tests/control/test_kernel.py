@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How kernels are compiled: fixed types, no memory of their own, plain Python on request."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Where compiled kernels are kept: by content, in a folder that can be written."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The lateral controller around the MPC: who is in control, failure, standstill."""
 
 from __future__ import annotations

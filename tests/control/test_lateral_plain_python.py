@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The lateral kernels and the gate as plain Python: the same tests, and no warning."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The lateral controller at rest: when the wheels are held, and on what."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The longitudinal tick: what Autoware's own suite asks of it, with numbers worked out by hand."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Commands and limits of DRIVE and STOPPING that no recorded run exercises."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How a stop is left: what it resets, and the wait for the steering."""
 
 from __future__ import annotations

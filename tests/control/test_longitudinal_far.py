@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Far from the trajectory: the emergency command, and what it leaves alone."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Memories of commands and speeds, and the prediction over the delay of 0.17 s."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Inputs that are missing, not usable, degenerate or absurd."""
 
 from __future__ import annotations

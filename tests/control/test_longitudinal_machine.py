@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The state machine: every state with every combination of conditions, and what a change resets."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The longitudinal kernels as plain Python: the same source, the same numbers."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The STOPPING state: smooth stop as a part of the tick."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The MPC: the cases of Autoware's own suite, when it gives up, what it takes as its state."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What Autoware's own tests of the MPC check: straight on, right turn, delay buffer."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """OSQP behind the record: parity with the recordings, and every way to fail."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The PID and the low pass before it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Copy, interpolation and insertion on lists of points."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The nearest search and projections."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The path over the horizon: velocity filter, times, length of a step, samples."""
 
 from __future__ import annotations

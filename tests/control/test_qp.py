@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The constrained solve against PyPI's daqp, on recorded problems and families of hard ones."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The check of a solution: what it accepts, and that every other point is refused."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Fields of a record as cells that can be set."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The reference path: where its points stand, what they hold, when the old one stays."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The reference is worked out as far as it is asked for: what comes of it is the same."""
 
 from __future__ import annotations

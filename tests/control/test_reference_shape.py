@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Yaw, curvature and the ego's place on the reference path."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The optional shaping of the reference path: moving average and terminal extension."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The table of rules: what each release changed, and nothing else."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What one odd input or a badly conditioned problem must not do to what the kernels remember."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Slope compensation: its three sources, its sign in both gears, its limits."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Smooth stop: the choice of braking over the last half metre."""
 
 from __future__ import annotations

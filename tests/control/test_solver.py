@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The way a solver's failure takes through the lateral controller."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Natural cubic splines: both fits, the value between knots and beyond them, unwrapping."""
 
 from __future__ import annotations

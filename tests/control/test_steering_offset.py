@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The steering offset: learnt while driving, taken from the sensor, given to the command."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The steering predictor: a first-order lag behind commands that take effect late."""
 
 from __future__ import annotations

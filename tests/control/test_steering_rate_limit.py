@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Bounds of the programme: angle, and rate by curvature and speed."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Trajectories that are refused as a whole: how many points, how close, how long."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Trajectories as planners send them: what is cleaned, what is left alone, what is refused."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Distances, stop points and pitch along lists of points."""
 
 from __future__ import annotations

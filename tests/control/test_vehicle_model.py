@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The three prediction models: closed forms against the transform of their equations."""
 
 from __future__ import annotations

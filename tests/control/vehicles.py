@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The vehicles of the tests: masses and tyres for the dynamics model, and each model by name."""
 
 from __future__ import annotations

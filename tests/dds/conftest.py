@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Fixtures for DDS: loopback only, and no configuration from the machine around."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Endpoints with type information as recent rmw_cyclonedds announces it (XTypes, dynamic types).
 
 Run as ``python -m tests.dds.dynamic_types DOMAIN TYPE...``: one reader and one writer for each

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A peer in a process of its own: ``python -m tests.dds.peer ROLE DOMAIN [ARGUMENT]``.
 
 It prints one line when it is ready and ends when its standard input closes.

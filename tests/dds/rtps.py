@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Forged RTPS: a datagram that carries any payload in the name of a real writer.
 
 No library stands between the payload and the reader's network stack, so the reader meets what a

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is used of the private C layer, nailed down: a new release that differs fails here."""
 
 from __future__ import annotations

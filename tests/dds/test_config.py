@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Configuration: what each setting becomes, and one clear line for every mistake."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Discovery: what came and went, in batches, and of which type."""
 
 from __future__ import annotations

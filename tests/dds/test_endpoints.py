@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Publisher and subscription on loopback: every topic of the table, newest first, counters."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Damaged messages through real DDS: rows 14 to 16 and 19 of the fault catalogue.
 
 Two ways in: a writer that checks nothing (same process), and forged RTPS datagrams in the name of a

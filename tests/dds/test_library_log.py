@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The library's own lines: in our form, and one of a kind in ten seconds."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Participants: discovery, presence, waiting, several in one process, deaths of others."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Policies as the library gets them."""
 
 from __future__ import annotations

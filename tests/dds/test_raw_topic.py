@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Serialized samples through the public C functions: checked by type, or passed as they are."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The filter itself; what it lets through on a network is in tests/network."""
 
 from __future__ import annotations

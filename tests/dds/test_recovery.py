@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Loss, partition, stall and restart between two processes, and what comes back by itself."""
 
 from __future__ import annotations

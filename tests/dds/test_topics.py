@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The one table of topics, as the contract (section 2) and the fault catalogue have it."""
 
 from __future__ import annotations

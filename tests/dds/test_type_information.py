@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Peers that announce type information: recent rmw_cyclonedds, and CycloneDDS 0.10 in C."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One wait over two domains."""
 
 from __future__ import annotations

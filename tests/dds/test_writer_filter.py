@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A reader's room for one writer: what others write does not get in."""
 
 from __future__ import annotations

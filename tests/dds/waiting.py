@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Waiting for events instead of sleeping."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The shipped systemd units: accepted by systemd itself, and in keeping with the program."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a scene must show: bounds on virtual time, and the way back."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The fault campaign: seeded, on virtual time, and each failure says how to repeat it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Edits of single messages on the wire: decode, change, encode again under the same stamp."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Hands on a running island: its timer, and functions that fail."""
 
 from __future__ import annotations

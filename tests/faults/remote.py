@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The side of the main compute: its clock and its way into the island's domain."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A closed loop in virtual time: vehicle and planner, faulty wires, the island, and a log of it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Makes docs/faults.md from the tests of the campaign: python -m tests.faults.table."""
 
 from __future__ import annotations

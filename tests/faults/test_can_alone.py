@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Rows 91 and 94: the end of an island that CAN alone hears, and a second master of the bus."""
 
 from __future__ import annotations

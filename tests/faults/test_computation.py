@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Rows 38 to 42 of the fault catalogue: a solver that finds nothing, or something wrong."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Rows 67 to 70 of the fault catalogue: what is configured wrong does not start.
 
 Every key of every shipped file in every way: tests/params/test_mutations.py; every field of the

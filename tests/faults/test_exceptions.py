@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Row 51 of the fault catalogue: an exception in each part of the island."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Rows 9 to 13 of the fault catalogue: what is frozen, dead, or comes in another order."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Rows 72 to 76 of the fault catalogue: publishers that are too many, new, or gone."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Rows 14 to 19 of the fault catalogue: bytes that are no message, or another one."""
 
 from __future__ import annotations

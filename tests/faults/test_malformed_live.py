@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Rows 14 to 19 with real bytes through real DDS: the island survives, counts, and goes on.
 
 The node is in this process, on virtual time, over a participant of its own; what comes to it has

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Rows 27 to 31, 92 and 93 of the fault catalogue: trajectories that no planner should publish.
 
 And those that planners do publish, whose points have flaws that the path has not.

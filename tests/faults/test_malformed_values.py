@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Rows 20 to 26 of the fault catalogue: values, orientations, frames and sizes that are wrong."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Row 77 of the fault catalogue: who drives changes again and again."""
 
 from __future__ import annotations

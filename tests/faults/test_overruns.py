@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Rows 43 to 46 of the fault catalogue: ticks that come or end too late."""
 
 from __future__ import annotations

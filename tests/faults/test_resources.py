@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Rows 47 to 50 of the fault catalogue: garbage, memory, descriptors."""
 
 from __future__ import annotations

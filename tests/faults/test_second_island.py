@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Row 71 of the fault catalogue: two islands on one domain."""
 
 from __future__ import annotations

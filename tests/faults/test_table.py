@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every row has its test, and the page of rows is current."""
 
 from __future__ import annotations

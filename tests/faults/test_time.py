@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Rows 32 to 37 of the fault catalogue: clocks that step, differ, wrap or stand still."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Rows 1 to 8 of the fault catalogue: loss, delay, jitter, duplicates, reordering, backlog."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The wire between main compute and island: one Wire for each topic, each with its own faults."""
 
 from __future__ import annotations

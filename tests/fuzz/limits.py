@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Bounds for a piece of work on hostile input: processor time, memory."""
 
 from __future__ import annotations

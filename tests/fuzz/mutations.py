@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Small changes of good files that make bad ones, the same for the same seed."""
 
 from __future__ import annotations

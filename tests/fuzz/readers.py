@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every reader of a file that somebody else wrote: its good files, and how it is asked to read."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Words on the command line that no program expects: one line, and never a fault of the island."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Files made to do harm, each for a reason: every reader refuses them, or reads what is there."""
 
 from __future__ import annotations

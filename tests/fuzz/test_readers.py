@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every reader of files against thousands of broken ones: an orderly refusal, or a clean load.
 
 No other exception, no end that does not come, no memory without bound. ``SAFETY_ISLAND_FUZZ=50``

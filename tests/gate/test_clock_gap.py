@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What two clocks differ by at least, when a sample was received at some time of an interval."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Stamps that do not fit: a clock goes on, samples from the past do not."""
 
 from __future__ import annotations

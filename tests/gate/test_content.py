@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Frames, the number of points, and odometry that repeats."""
 
 from __future__ import annotations

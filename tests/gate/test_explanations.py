@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every reason of the gate says what it means and what to do."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is sent on change: no old word comes back into force, and no STOP is lost."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which sample of several is looked at."""
 
 from __future__ import annotations

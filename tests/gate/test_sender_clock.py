@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The common clock of several inputs: what they share, and at which rate it runs."""
 
 from __future__ import annotations

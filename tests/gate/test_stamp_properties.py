@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What must hold for any stream of stamps."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Stamps one by one, each limit at its boundary. 1 tick = 1/8 s, the age limit 1/2 s."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Each warning by its own cause, and all at once."""
 
 from __future__ import annotations

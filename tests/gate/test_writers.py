@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """To which publisher the island keeps, and how often they change."""
 
 from __future__ import annotations

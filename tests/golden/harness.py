@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Recorded runs of the C++ firmware's controllers, and how a test feeds one to the controllers."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every recorded run of Autoware's newer controllers (0.43 to 0.53) through the real node."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the MPC computes on the way, against dumps of single ticks of the firmware.
 
 A dump (``dumps/<scenario>__<run>_dump<tick>.npz``) holds ``reference`` (x, y [m], speed [m/s]),

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The longitudinal controller alone against every recorded run of the C++ firmware."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every recorded run of the C++ firmware through the real controller node, compiled and plain."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A guard with round limits, and a stream of commands for it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The guard does not interfere with what the firmware was recorded to do, by limits as shipped."""
 
 from __future__ import annotations

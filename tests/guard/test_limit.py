@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The bits and the texts of the guard's checks."""
 
 from __future__ import annotations

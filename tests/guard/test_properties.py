@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Whatever goes in, what comes out keeps every limit, or nothing comes out."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What passes at once: each limit up to its edge, and nothing that the full way would change."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Limits by speed, and values within intervals."""
 
 from __future__ import annotations

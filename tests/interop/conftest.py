@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Fixtures for peers that are not ours. Every test in this folder is marked ``interop``."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The island's side of the interop tests: ``python -m tests.interop.island_peer DOMAIN``.
 
 Receives odometry and acceleration, changes one number, and sends them back on ``/echo/...``. Also

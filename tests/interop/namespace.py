@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A private network namespace: its own loopback, no way out, nobody else on the DDS ports."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A ROS 2 without a ROS installation: rclpy from PyPI in a virtual environment of its own.
 
 It is made once and kept: in ``ISLAND_ROS_VENV`` when that is set, else under the user's cache, in a

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # mypy: ignore-errors
 """A ROS 2 node, run by the Python that has rclpy: publishes, subscribes, and tells what it sees.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """ROS 2 Kilted on the main compute's domain, the island on its own, our bridge between them."""
 
 from __future__ import annotations

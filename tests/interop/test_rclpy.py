@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """ROS 2 Kilted (rclpy, Fast DDS) and the island, face to face on one domain."""
 
 from __future__ import annotations

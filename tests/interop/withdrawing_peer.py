@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Says a state and takes it back, again and again: ``python -m tests.interop.withdrawing_peer D``.
 
 One after the other whenever odometry comes. Ends when its standard input closes.

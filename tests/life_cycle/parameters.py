@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The parameters that tests of the life cycle begin with."""
 
 from __future__ import annotations

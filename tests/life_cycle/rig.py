@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A life cycle that is told facts, tick by tick."""
 
 from __future__ import annotations

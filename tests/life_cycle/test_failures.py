@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What goes wrong in the island itself: how much of it ends the output, and what is named first."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which of two islands was there first."""
 
 from __future__ import annotations

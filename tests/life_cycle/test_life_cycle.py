@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """From the facts of a tick to a state: what blocks, what latches, what arms."""
 
 from __future__ import annotations

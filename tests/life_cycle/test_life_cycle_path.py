@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A trajectory that cannot be followed: at rest nothing is latched, in motion it is as ever."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A process that stood still, a machine that slept, ticks that end with an exception."""
 
 from __future__ import annotations

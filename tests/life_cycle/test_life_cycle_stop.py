@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """CAN_ONLY at work: hold, stop, silence."""
 
 from __future__ import annotations

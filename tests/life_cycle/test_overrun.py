@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Late ticks in a row and a mean period that is too long, each at its boundary."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The declared stop: against sums that were done by hand, then whatever the parameters are."""
 
 from __future__ import annotations

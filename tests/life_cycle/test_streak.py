@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Failures in a row, and for how long."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every pair of state and conditions against a table that was written on its own."""
 
 from __future__ import annotations

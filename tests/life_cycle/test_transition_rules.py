@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What must hold for every step of the life cycle, stated without the table."""
 
 from __future__ import annotations

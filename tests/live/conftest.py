@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A scene for each test, with two DDS domains of its own."""
 
 from __future__ import annotations

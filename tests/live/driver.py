@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A main compute that says what a test wants: 1 m/s on a straight course, and what is wrong."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Listens on a domain and keeps everything that comes, with the time at which it came."""
 
 from __future__ import annotations

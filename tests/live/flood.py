@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A publisher that floods a topic: python -m tests.live.flood DOMAIN TOPIC RATE [Hz]."""
 
 from __future__ import annotations

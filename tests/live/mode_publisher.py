@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A process that publishes the operation mode alone: each line of its input is a mode.
 
 It leaves the domain in good order at the end of its input.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Island, bridge and main compute as processes, and what can be done to them."""
 
 from __future__ import annotations

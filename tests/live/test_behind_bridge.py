@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a publisher behind the bridge does counts as if it were on the island's own domain.
 
 Rows 83 to 86 of the catalogue of faults, live, with the shipped bridge.

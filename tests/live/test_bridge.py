@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The bridge dies and comes back: row 75 of the catalogue of faults, live."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The clock of the main compute is set on the way: rows 32 to 34 of the catalogue, live."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How a driving island ends, and what does not end it: row 91 of the catalogue of faults, live."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A second island, a second publisher: row 71 of the catalogue of faults and section E, live."""
 
 from __future__ import annotations

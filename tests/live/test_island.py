@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The island dies while it drives, or is asked to arm: row 52 of the catalogue of faults, live."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The main compute dies or stands still: rows 2, 52 and 74 of the catalogue of faults, live."""
 
 from __future__ import annotations

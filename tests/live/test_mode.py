@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the operation mode's publisher said last is in force: rows 81 and 82, live."""
 
 from __future__ import annotations

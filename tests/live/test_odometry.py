@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Odometry that is no number, for a second: row 20 of the catalogue of faults, live."""
 
 from __future__ import annotations

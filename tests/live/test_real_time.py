@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Island and bridge under load, and as services, as real processes."""
 
 from __future__ import annotations

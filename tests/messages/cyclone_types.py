@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Types of the message registry as those of the cyclonedds package, which serialize by itself."""
 
 from __future__ import annotations

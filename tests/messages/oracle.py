@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Two serializers that are not ours: rosbags (types from .msg texts) and cyclonedds."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Ordinary messages, one of each hot type, with what it takes to decode and compare them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Random messages of any registered type, as Hypothesis strategies."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The generic codec against two independent serializers, over random messages of every type."""
 
 from __future__ import annotations

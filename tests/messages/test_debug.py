@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The encoders of the debug topics against independent bytes."""
 
 from __future__ import annotations

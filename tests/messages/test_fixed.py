@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Records of fixed size lie in memory as their CDR lies on the wire."""
 
 from __future__ import annotations

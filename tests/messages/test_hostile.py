@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Bytes that want to do harm: cut, flipped, with absurd lengths. Rows 14, 15, 16, 19 of faults."""
 
 from __future__ import annotations

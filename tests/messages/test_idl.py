@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The IDL reader: what it understands, and one line for what it does not."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The hot codecs of the inputs against the generic one and against independent serializers."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The hot codecs of the outputs against independent bytes."""
 
 from __future__ import annotations

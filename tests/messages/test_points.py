@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The wire layout of a trajectory point is the layout that the kernels read."""
 
 from __future__ import annotations

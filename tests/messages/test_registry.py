@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The registry holds exactly the types of the island's edge, with their ROS and DDS names."""
 
 from __future__ import annotations

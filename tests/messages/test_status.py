@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The status: its files agree with each other and with the code, its bytes with other codecs."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Trajectories: the shifted first point, for every alignment, against independent bytes."""
 
 from __future__ import annotations

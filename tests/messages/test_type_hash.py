@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Type hashes against rosbags, which computes them from its own definitions."""
 
 from __future__ import annotations

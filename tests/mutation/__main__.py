@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``tools/mutate``: mutation tests of the safety code and of what decides around it."""
 
 from __future__ import annotations

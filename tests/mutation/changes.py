@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The changes that mutants are made of: what a node of the syntax tree may become instead."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every small change of a Python source that a good test should notice."""
 
 from __future__ import annotations

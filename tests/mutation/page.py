@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """docs/mutation.md: the score of each room, and why a survivor is no fault of the tests."""
 
 from __future__ import annotations

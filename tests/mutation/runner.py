@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Runs the tests of a room against a mutant, in a fork of a process that is warm already."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The mutants are what they say, and a survivor's reason is found again."""
 
 from __future__ import annotations

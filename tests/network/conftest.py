@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Machines in miniature: network namespaces that are joined by cables."""
 
 from __future__ import annotations

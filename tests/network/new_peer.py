@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A program with the public Python package of CycloneDDS: does what ``old_peer.c`` does."""
 
 from __future__ import annotations

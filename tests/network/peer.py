@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One side of a network test: ``python -m tests.network.peer ROLE DOMAIN INTERFACE [ARGUMENT...]``.
 
 ``receive`` prints its UDP ports, then the angle of every steering report that it receives.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """An interface that goes and comes back is used again, and each change is one line."""
 
 from __future__ import annotations

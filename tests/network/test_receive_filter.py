@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """An interface is a limit: what comes in over another one is dropped by the kernel.
 
 Datagrams are forged in the name of a real writer, with the GUID and the number that the reader

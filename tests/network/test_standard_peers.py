@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Programs of others, set up as their own pages say, find an island on loopback.
 
 Two of CycloneDDS: its newest release, and 0.10 of Debian and of ROS 2 up to Jazzy.

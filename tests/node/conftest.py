@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A node with a follower that only records."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """An island in a process of its own: python -m tests.node.live_island DOMAIN_ID."""
 
 from __future__ import annotations

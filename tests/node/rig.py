@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A controller node in virtual time with hands on its topics, and a follower that only records."""
 
 from __future__ import annotations

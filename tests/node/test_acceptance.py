@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What Autoware's own tests of the controller node check, through the real node and controllers.
 
 Vehicle at the origin, not accelerating, AUTONOMOUS (control not marked as enabled), as there; the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Requests to arm, and what the status answers."""
 
 from __future__ import annotations

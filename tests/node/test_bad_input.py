@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Bad samples through the real node and controllers: nothing changes but the counters."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Nothing jumps when the state changes: the real controllers, the shipped parameters.
 
 A vehicle on a bend, whose driver holds another angle and another speed than the controllers would.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What keeps a command from being sent."""
 
 from __future__ import annotations

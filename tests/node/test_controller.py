@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The tick of the controller node: its order, what it waits for, what it refuses."""
 
 from __future__ import annotations

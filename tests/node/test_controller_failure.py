@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a tick does when numbers, controllers or the program fail."""
 
 from __future__ import annotations

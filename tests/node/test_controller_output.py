@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a tick sends, and what it does not send."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The controller node on the platform's timer, in virtual time."""
 
 from __future__ import annotations

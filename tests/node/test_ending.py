@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How a run ends: at once, or with CAN alone after the declared stop."""
 
 from __future__ import annotations

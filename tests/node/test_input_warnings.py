@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """When the warnings of the inputs are looked for, and that none is missed in between."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The life cycle in the node: what goes out in each state, and what the log says of it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Whoever is on a topic but does not match is told once, when discovery finds it."""
 
 from __future__ import annotations

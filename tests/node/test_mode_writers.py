@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The operation mode is sent on change: what one publisher said once must survive the other."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The run of a node: garbage collector, transport of the platform, outputs that fail."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Each field of the status says what the node knows: no two of them share a value."""
 
 from __future__ import annotations

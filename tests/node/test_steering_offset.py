@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The offset of the steering sensor: bounded at the door, and only where the release has it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every tick fails while a vehicle that hears CAN alone is braked."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the controllers did arrives in the status."""
 
 from __future__ import annotations

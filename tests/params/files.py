@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Parameter files on disk that tests change."""
 
 from __future__ import annotations

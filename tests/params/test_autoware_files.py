@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Autoware's own files load unchanged (their keys and values stand in ``data/``)."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Types, ranges and misspelt keys."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Each key of each shipped file, broken in every way: the error names file, line and key."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Keys of Autoware's files that have no effect."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is allowed can be driven with: the controllers stay finite at both ends of every range."""
 
 from __future__ import annotations

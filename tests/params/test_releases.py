@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which release of Autoware the files of a user stand for, and what becomes of keys of others."""
 
 from __future__ import annotations

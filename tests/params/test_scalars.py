@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Scalars mean what they mean to ROS 2."""
 
 from __future__ import annotations

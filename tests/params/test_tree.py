@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Files are taken apart into keys with lines."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Each test that asks for a rig runs on every backend."""
 
 from __future__ import annotations

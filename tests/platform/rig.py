@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a contract test needs of a platform besides its interfaces: time that passes, a log sink."""
 
 from __future__ import annotations

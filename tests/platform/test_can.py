@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """CAN devices: what both backends promise, and the bytes that SocketCAN hands to the kernel."""
 
 from __future__ import annotations

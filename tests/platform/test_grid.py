@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The time grid of a timer, by hand calculation."""
 
 from __future__ import annotations

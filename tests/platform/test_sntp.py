@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What an SNTP reply must be to be believed."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What every timer promises; the arithmetic of its grid has tests of its own."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Small recorded runs for tests, and copies of them with something changed."""
 
 from __future__ import annotations

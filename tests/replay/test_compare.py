@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The judgement: tolerances, what is compared, which tick is named first."""
 
 from __future__ import annotations

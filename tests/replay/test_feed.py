@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A recording through the real node: which messages come when, what comes out."""
 
 from __future__ import annotations

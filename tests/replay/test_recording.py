@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Recorded runs as files: what is read, and what is said of a file that is none."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A replay as CSV: names, columns, every digit."""
 
 from __future__ import annotations

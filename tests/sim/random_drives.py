@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Drives of the whole node with random parameters and disturbances, in memory on virtual time."""
 
 from __future__ import annotations

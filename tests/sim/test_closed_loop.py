@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The loop on virtual time, first with a plain controller of its own."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Lines that act on the main compute while it drives."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every course is a road that the vehicle and its controllers can follow."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A course is repeated or cut so that it lasts as long as wanted."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The real trajectory follower on every course, at the period of the island and at Autoware's."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The command gate: every state, and what it does to the vehicle."""
 
 from __future__ import annotations

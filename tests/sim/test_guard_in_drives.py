@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The guard of the set firmware passes whatever its controllers ask for."""
 
 from __future__ import annotations

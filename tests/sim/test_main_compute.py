@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The stand-in on its DDS domain, with a neighbour that listens and commands."""
 
 from __future__ import annotations

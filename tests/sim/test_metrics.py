@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What counts for the verdict on a drive."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The planner's window, its stops, and where it finds the vehicle."""
 
 from __future__ import annotations

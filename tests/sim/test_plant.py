@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The vehicle repeats the golden states, and does what a vehicle does."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The vehicle behind its gate on virtual time: engaging, silence, standstill of the process."""
 
 from __future__ import annotations

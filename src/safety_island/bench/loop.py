@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``island bench loop``: from odometry on the main compute's domain to the ``Control`` back there.
 
 Between the two lies a wait for the next tick, which the period decides and not the program. What

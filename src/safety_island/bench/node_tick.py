@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The benchmark run, and the time of the whole node over it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the ratios mean that ``island bench``, its help and the README state: one definition each.
 
 ``YARDSTICK`` is measured in every run. The firmware is not part of this repository, so the ratios

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``island bench tick``: the time of one tick of both controllers, in process."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``island bench virtual``: how many times real time the whole island runs in virtual time."""
 
 from __future__ import annotations

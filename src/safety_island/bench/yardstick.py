@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The yardstick of the ratios that ``island bench`` measures, as ``ratios.YARDSTICK`` defines it.
 
 A machine's speed drifts by a third from minute to minute, so times are compared with a solve that

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The domain bridge at work: one thread, one wait for all domains, bytes in and bytes out."""
 
 from __future__ import annotations

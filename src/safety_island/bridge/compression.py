@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Compressed routes: a sample, header included, as zstd in ``domain_bridge/msg/CompressedMsg``.
 
 The same bytes as ROS 2's ``domain_bridge``: level 1, the size of the content in the zstd frame, and

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The bridge file in the schema of ROS 2's ``domain_bridge``, checked to the last key.
 
 The same topic may stand in ``topics`` several times: each entry counts. Three keys of a topic are

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The subscriptions of a route: one for each kind of publisher that it hears."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One route at work: its subscriptions, its publishers beyond, and who is on either end.
 
 A subscription for each kind of publisher asks for what that kind offers, so nobody who joins makes

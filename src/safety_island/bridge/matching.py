@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The QoS of both ends of a route for its publishers: what the entry asks for, else theirs."""
 
 from __future__ import annotations

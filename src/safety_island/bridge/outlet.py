@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A publisher of the bridge in the target domain, and what it owes to those who just found it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The publishers of a route in the target domain, and which of them speaks for whom."""
 
 from __future__ import annotations

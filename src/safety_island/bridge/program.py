@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The bridge as a program: files and options in, exit code out."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """From bridge files and options to the list of routes, or the reason why there is none."""
 
 from __future__ import annotations

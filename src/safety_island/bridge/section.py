@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A map in a YAML file whose every complaint names file and line."""
 
 from __future__ import annotations

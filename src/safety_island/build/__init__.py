@@ -1,1 +1,2 @@
+# SPDX-License-Identifier: Apache-2.0
 """Targets, their configuration by Kconfig, and the build."""

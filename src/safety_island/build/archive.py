@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Writes static libraries: an ``ar`` archive with a symbol table, in the System V (GNU) form."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a built island knows of its own build: target, revision, configuration."""
 
 from __future__ import annotations

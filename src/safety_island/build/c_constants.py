@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Sizes and enumerations of the control room as C constants."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The C header of the control kernels: sizes, states, records with asserted layout, functions."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The C function around a kernel, in LLVM IR."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Checks, without a C compiler, that a machine lays records out as NumPy does."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """NumPy record types as C structures, with assertions of their layout."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """From the LLVM IR of a kernel to an object file for one machine, with a plain C interface."""
 
 from __future__ import annotations

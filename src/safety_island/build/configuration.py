@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The chosen configuration as the program uses it: every symbol of Kconfig, checked and typed.
 
 Needs no Kconfig parser, so that a built island reads its ``.config`` without one.

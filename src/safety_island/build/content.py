@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a self-contained island carries: the package, what it needs, the results of the build."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The installed packages that a built island carries, and which of their files."""
 
 from __future__ import annotations

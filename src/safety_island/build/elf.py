@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a build must know of an object file: symbols, sizes, processor."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """All that the bytes of a build depend on."""
 
 from __future__ import annotations

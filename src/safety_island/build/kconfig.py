@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The configuration of a target: Kconfig defaults and fragments, merged as Zephyr does.
 
 Order, the later one winning: the defaults of ``config/Kconfig``, ``prj_actuation.conf``,

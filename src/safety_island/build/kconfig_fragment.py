@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Lines of a configuration fragment: ``CONFIG_NAME=value`` and ``# CONFIG_NAME is not set``."""
 
 from __future__ import annotations

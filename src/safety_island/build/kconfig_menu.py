@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The menu of ``island menuconfig``, and the fragment that keeps what was chosen in it.
 
 As in Zephyr the menu works on ``build/<target>/.config``. What differs there from the shipped

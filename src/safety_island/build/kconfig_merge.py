@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Fragments one after the other into Kconfig, as Zephyr does: later wins, nothing is ignored."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The symbols of ``config/Kconfig``: which assignments they take, and what they say of themselves.
 
 Kconfiglib parses and evaluates; here its answers become sentences for a user.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Symbols of Zephyr itself, as the firmware's ``prj.conf`` has them beside the island's.
 
 Zephyr has some twenty thousand symbols. Their first words are few; a symbol that is one letter or

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """LLVM IR of the control kernels: compiled once for the sources at hand, then taken from disk.
 
 The IR is for no particular machine, so every target shares it.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Compiles the control kernels to LLVM IR, in a process of its own: ``python -m`` this module.
 
 Numba reads its settings once, so they must be in the environment before the process starts

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Names of the functions inside an object file."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Object files of the control kernels for one machine, kept on disk beside their LLVM IR."""
 
 from __future__ import annotations

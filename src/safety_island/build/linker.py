@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Links object files to a shared library, with the C compiler at hand."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The processors that kernels are compiled for, and which target has which."""
 
 from __future__ import annotations

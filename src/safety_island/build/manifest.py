@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The manifest of a build: what was made of what. It holds no time and no path."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The message types as a C header, in the mapping that CycloneDDS's own IDL compiler uses.
 
 Struct ``pkg_msg_dds__Name_`` for ``pkg/msg/Name``; a string is ``char *``, or an array when it is

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The build of one target, step by step, into ``build/<target>/``."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The programs that a build can make of a target whose machine runs Python."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Writes a self-contained island: one file that Python runs without anything installed."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The start of a self-contained island: unpacks what it carries, once, and runs it from there.
 
 Runs before anything else is there, so it uses the standard library alone, and of the island the

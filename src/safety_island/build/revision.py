@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which sources a build is made from: the revision of git, and a hash of the files themselves."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """64-bit arithmetic for 32-bit Arm, in LLVM IR, under the names that compilers call it by.
 
 Run-time ABI for the Arm Architecture (IHI 0043), section 4. Its calling convention

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Routines that a compiler expects of its environment, as LLVM IR, to be put inside an object.
 
 A 32-bit processor has no instruction for 64-bit division or for conversion between 64-bit integers

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The targets: machines that the island is built for."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A platform wheel: the package with a library of compiled kernels inside.
 
 The library is called through ctypes and needs the C library alone, so one wheel for each processor

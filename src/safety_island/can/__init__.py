@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """CAN output: three classic frames for each command, the modes, the backends, the DBC.
 
 ``frames`` holds the one table of frames and signals; the encoder and decoder (``codec``), the DBC

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The CAN backends: a row for each, its module imported when it is chosen."""
 
 from __future__ import annotations

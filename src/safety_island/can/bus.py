@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What CAN output needs of a bus: an open device, its events, and the delivery of a triple."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What python-can's exceptions and error frames mean for the output."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The text forms of can-utils: ``100#48E80100E05EF8FF``, ``candump -L``, ``candump -ta``."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which channel of a log counts: commands of two islands, or a copy of one, must not be mixed."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A command as CAN carries it, and the causes for which one is not sent."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The DBC file, made from the table of frames."""
 
 from __future__ import annotations

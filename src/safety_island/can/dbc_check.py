@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Checks a DBC file against the encoder: field by field, and by decoding what it encoded."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Decoder of the three frames: pure functions that follow the table of ``frames``."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Encoder of the three frames: a pure function that follows the table of ``frames``."""
 
 from __future__ import annotations

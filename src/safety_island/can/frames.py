@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The frames of a command: identifier, bits, scale and unit of every signal, in one table.
 
 Source: the CAN output contract of the safety island. All frames are classic CAN with a standard

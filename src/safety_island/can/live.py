@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A live bus as a stream of entries, and a command sent to it by hand."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Opens a log: packed or not, in the encoding that its first bytes name; tells which kind it is."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Reads CAN logs: ``candump`` here, Vector and PEAK formats and CSV through python-can."""
 
 from __future__ import annotations

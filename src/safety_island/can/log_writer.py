@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Writes the frames that were sent to a file that ``canplayer`` and ``cantools decode`` read."""
 
 from __future__ import annotations

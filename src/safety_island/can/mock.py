@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """An in-memory bus: a full backend of the production command, and the fake of the tests."""
 
 from __future__ import annotations

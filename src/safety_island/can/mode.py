@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Output modes, and which mode and CAN bus each target starts with."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a bus or a log shows: rates, sequence gaps, ages, losses, and the newest command."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Commands go out on CAN: three frames together, or the command counts as failed."""
 
 from __future__ import annotations

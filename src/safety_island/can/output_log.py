@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What CAN output says, once for each trouble, and once when it is over."""
 
 from __future__ import annotations

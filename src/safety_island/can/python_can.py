@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every CAN backend but the mock, through python-can."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Opens and closes a bus of python-can; its errors become one line."""
 
 from __future__ import annotations

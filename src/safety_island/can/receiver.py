@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The receiver's side: which commands of a bus may be acted on, and when there are none."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """When a bus that failed is tried again."""
 
 from __future__ import annotations

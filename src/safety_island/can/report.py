@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the monitor found, as text and as plain values for JSON."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What only SocketCAN can tell: frames that the kernel holds back, and a bus that is off."""
 
 from __future__ import annotations

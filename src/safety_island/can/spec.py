@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What ``--can`` says: a backend, a channel, options."""
 
 from __future__ import annotations

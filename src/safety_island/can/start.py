@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Brings CAN output up as the mode demands."""
 
 from __future__ import annotations

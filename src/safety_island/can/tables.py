@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The tables of ``docs/can.md``, made from the code."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The way to a device that may block: a thread that is kept waiting instead of the control loop."""
 
 from __future__ import annotations

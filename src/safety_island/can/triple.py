@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Puts the frames of one command together again."""
 
 from __future__ import annotations

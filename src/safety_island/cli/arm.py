@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``island arm``: asks a SILENT island to send commands again."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``island bridge``: forwards topics between DDS domains, as ROS 2's ``domain_bridge`` does."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What ``island bridge`` is to the machine: a real-time process, and a service with a watchdog."""
 
 from __future__ import annotations

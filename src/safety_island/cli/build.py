@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``island build``: everything that a target needs, made ready in ``build/<target>/``."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``island can``: watch the command frames, send one by hand, write and check the DBC file."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``island can dbc`` and ``island can tables``: what derives from the table of frames."""
 
 from __future__ import annotations

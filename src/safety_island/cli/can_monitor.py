@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``island can monitor``: decode a live bus or a log."""
 
 from __future__ import annotations

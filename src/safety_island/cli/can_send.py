@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``island can send``: one command by hand."""
 
 from __future__ import annotations

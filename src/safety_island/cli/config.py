@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``island config``: show the configuration of a target, or what differs from the defaults."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Options that choose a target and change its configuration, and what they resolve to."""
 
 from __future__ import annotations

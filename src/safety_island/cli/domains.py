@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Finds DDS domain ids that nobody on this machine uses.
 
 By the RTPS rule, for every vendor, a participant holds UDP port 7400 + 250 * domain (discovery by

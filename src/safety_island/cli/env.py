@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``island env``: what another DDS program needs in its environment to meet the island."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Words of others, from files and from the network, as they may be shown on a terminal."""
 
 from __future__ import annotations

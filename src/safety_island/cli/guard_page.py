@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Writes docs/guard.md from the guard's code: ``python -m safety_island.cli.guard_page``."""
 
 from __future__ import annotations

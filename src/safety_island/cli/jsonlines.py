@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Writes JSON lines without ever waiting for whoever reads them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The entry point of ``island``: find the command, run it, turn every error into one line."""
 
 from __future__ import annotations

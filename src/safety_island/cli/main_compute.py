@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``island main-compute``: a planner and a vehicle in place of Autoware."""
 
 from __future__ import annotations

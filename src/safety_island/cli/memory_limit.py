@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Looks whether the limits of this process leave the memory that a command needs, before it starts.
 
 Libraries take it ill when they get none in their start: OpenBLAS tries again for ever with the

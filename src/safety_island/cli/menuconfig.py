@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``island menuconfig``: the familiar menu on the configuration of a target."""
 
 from __future__ import annotations

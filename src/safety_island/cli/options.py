@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Options that several commands share, so that each is spelt, checked and explained once."""
 
 from __future__ import annotations

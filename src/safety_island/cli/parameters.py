@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Turns the words of ``--params`` and ``--period`` into a checked parameter set."""
 
 from __future__ import annotations

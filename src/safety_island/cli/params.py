@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``island params``: show a parameter set with its units, ranges and origins, or check files."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """An argument parser whose errors are one line and whose help teaches."""
 
 from __future__ import annotations

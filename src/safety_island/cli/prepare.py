@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``island prepare``: compile the control kernels ahead of the first run."""
 
 from __future__ import annotations

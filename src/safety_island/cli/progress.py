@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Shows what is going on while the control kernels are compiled."""
 
 from __future__ import annotations

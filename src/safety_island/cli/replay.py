@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``island replay``: recorded runs through the real node, compared with what they hold."""
 
 from __future__ import annotations

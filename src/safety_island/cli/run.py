@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``island run``: the safety island itself."""
 
 from __future__ import annotations

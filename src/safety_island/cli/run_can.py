@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The CAN side of ``island run``: the output, its log file, and what left on it."""
 
 from __future__ import annotations

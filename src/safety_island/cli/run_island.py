@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What ``island run`` does: settings, network, time, CAN, DDS, kernels, then ticks."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What ``island run`` tells of itself: a few lines for a person, or every tick as a JSON line."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What ``island run`` runs with: the configuration of the target, and the options that win over it.
 
 Every symbol of Kconfig ends here in something that the program uses.

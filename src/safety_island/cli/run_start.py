@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The orderly start of ``island run``: network first, then time."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Writes docs/status.md from the code: ``python -m safety_island.cli.status_page``."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """SIGINT, SIGTERM, SIGHUP while a command starts up: the process ends at once, with exit code 0.
 
 A handler that raises is not enough: the exception is lost when it hits a callback of the compiler,

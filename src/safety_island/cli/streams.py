@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Standard streams as they may be found: closed, full, or with nobody at the other end."""
 
 from __future__ import annotations

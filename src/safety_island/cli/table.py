@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The commands of ``island``: a name, where it lives, one line of help.
 
 A command's module is imported when it is chosen, so that ``island --help`` needs none of them. It

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Statistics of a run of any length in memory of a fixed size."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Writes docs/topics.md from the table of topics: ``python -m safety_island.cli.topics_page``."""
 
 from __future__ import annotations

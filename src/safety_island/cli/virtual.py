@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``island run --platform sim``: the vehicle that the node drives in virtual time."""
 
 from __future__ import annotations

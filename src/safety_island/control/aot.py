@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Kernels that were compiled ahead of time: a shared library, so that no compiler runs here.
 
 The library is made by ``island build``. ``SAFETY_ISLAND_KERNELS`` names it, or it is beside this

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Cholesky factor H = R'R (R upper triangular) and the triangular solves that use it.
 
 The inner loops run over slices of contiguous rows and start at zero: in that shape LLVM vectorises

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The condensed quadratic programme of the MPC: H and f from the models and weights.
 
 The firmware multiplies dense matrices. Here the structure does the work: with the cost to go

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Cost to go and Hessian of the condensed problem for a model of four states, any of them coupled.
 
 The yaw error is state 2. ``condense`` says what is computed here.

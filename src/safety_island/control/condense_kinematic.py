@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Cost to go and Hessian of the condensed problem for the kinematic models.
 
 Their matrix of a step is upper triangular with two ones, ``[[1, a, b], [0, 1, c], [0, 0, d]]``; the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Whether steering and trajectory have come to rest: the memories of the lateral wrapper."""
 
 import math

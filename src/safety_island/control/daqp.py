@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A dual active-set solver for the quadratic programme of the MPC.
 
 After D. Arnstroem, A. Bemporad and D. Axehill, "A dual active-set solver for embedded quadratic

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Second-order Butterworth low pass of the lateral controller."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The trajectory follower: lateral and longitudinal controller over one set of inputs.
 
 This is the thin Python layer around the kernels. Inputs are offered one by one; what is refused

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Angles, clipping and the small scalar formulas that both controllers use."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Model and weights of every step of the MPC's horizon."""
 
 from safety_island.control.kernel import kernel

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Refusal of inputs that must not touch the controllers: every value finite and within reason.
 
 The bounds are wide: they keep squares and sums of finite numbers finite, nothing more. A trajectory

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The one place that knows how control kernels are compiled.
 
 A kernel is written in the part of Python that Numba compiles: scalars, ``float64`` arrays and

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Where compiled kernels are kept: a folder named after the content that they come from.
 
 Numba's own rule (path and time of one source file) would not notice an edit in a function that was

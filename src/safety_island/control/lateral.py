@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The lateral controller around the MPC: history, stopped state, convergence."""
 
 import numpy as np

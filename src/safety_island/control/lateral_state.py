@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Everything that the lateral controller remembers, and the memory in which it works."""
 
 import numpy as np

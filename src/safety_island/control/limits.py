@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Fixed sizes of the controller's memory; what does not fit is refused before a kernel sees it."""
 
 MAX_POINTS = 4096

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One tick of the longitudinal controller: inputs in, speed and acceleration command out."""
 
 import numpy as np

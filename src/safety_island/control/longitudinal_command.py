@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The acceleration and speed command of each longitudinal state, and the limits on it."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Short memories of commands and speeds, and the state that they predict after the delay."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The four states of the longitudinal controller: which comes next, and what a change resets."""
 
 from safety_island.control.geometry import time_since

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Everything that the longitudinal controller remembers, and the values of one tick."""
 
 from __future__ import annotations

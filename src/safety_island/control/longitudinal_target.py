@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Where the vehicle is on its trajectory, and the point that it is controlled to."""
 
 import math

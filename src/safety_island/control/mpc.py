@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One tick of the lateral MPC: from the reference path to a steering angle."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The MPC's quadratic programme by OSQP, as the recordings that name it were made.
 
 Imported only when chosen; needs the extra ``safety-island[osqp]``. Settings as in the firmware's

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every parameter of the controllers and the node: name, type, unit, range.
 
 The names are Autoware's own, a dot in a key written as an underscore. There are no defaults here:

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """PID of the speed error, and the first-order low pass before it."""
 
 from safety_island.control.geometry import clip

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Lists of ``POINT`` records without overlaps: copy, interpolate, insert."""
 
 import math

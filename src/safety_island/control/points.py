@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Search and distances on a trajectory of ``POINT`` records."""
 
 import math

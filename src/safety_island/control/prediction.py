@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The path over the MPC's horizon: velocity filter, nearest pose, time stations.
 
 Times count from the first point of the ego's segment; nothing before it is ever read.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Exact solve of the MPC's quadratic programme: Cholesky first, the active-set solver when needed.
 
 Fill ``H``, ``f`` and the four bounds of a record with ``QP_COLUMNS`` (see ``qp_records``), call

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Entries that solve and check a quadratic programme outside the tick (OSQP, tests)."""
 
 from safety_island.control.kernel import entry

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """An independent check of a solution of the quadratic programme, before it is used.
 
 Nothing of the solver's own bookkeeping is read, only the problem and ``u``. A point that keeps all

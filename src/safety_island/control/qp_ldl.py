@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """L D L' of the Gram matrix of the working set, kept while rows come and go.
 
 The Gram matrix is M M' with M the rows ``qp_M`` in the order of the working set. Adding a row

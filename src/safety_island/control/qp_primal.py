@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """From multipliers of the working set to u, exact to rounding at the active bounds."""
 
 from safety_island.control.cholesky import solve_upper

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Memory of the quadratic programme and of its solvers.
 
     minimise 1/2 u'H u + f'u   subject to   lb <= u <= ub,  lbA_i <= u_i - u_(i-1) <= ubA_i

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The working set: constraints that the active-set solver holds at a bound, and their rows of M."""
 
 from safety_island.control.cholesky import solve_transposed

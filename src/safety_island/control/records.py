@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Record types that the kernels share: parameters, one trajectory point, inputs, command, trace.
 
 Each is C-aligned and is what a firmware header declares later. A kernel takes a record as an array

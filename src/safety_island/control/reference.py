@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The reference path of the MPC: the accepted trajectory, resampled by arc length at the ego.
 
 Only the stations are placed for the whole path. Positions and speeds (``reference_positions``), yaw

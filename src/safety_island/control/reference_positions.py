@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Positions and speeds of the reference, from its first point as far as they are asked for.
 
 A trajectory may be three times as long as the horizon; what lies beyond it costs nothing.

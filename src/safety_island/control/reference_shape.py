@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Yaw, curvature and the ego's place on the reference path, computed where they are asked for.
 
 Yaw and curvature read points around the one that they are asked for, which must be worked out.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Moving average over the reference path (optional)."""
 
 from safety_island.control.kernel import kernel

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The reference path of the temporal mode: the points as received, each at the time it is due.
 
 Autoware since 0.53 (``trajectory_reference_mode: temporal``): the clock says where the vehicle

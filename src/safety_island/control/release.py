@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What changed in Autoware's trajectory follower from release to release, as records of rules.
 
 One table holds it: each release names the rules that it changed, and takes the rest from the one

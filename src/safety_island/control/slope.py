@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Slope of the road: where it is taken from, and the acceleration that compensates it."""
 
 import math

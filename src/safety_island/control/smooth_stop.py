@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Smooth stop: how to brake over the last half metre without a jerk."""
 
 from safety_island.control.geometry import clip, time_since

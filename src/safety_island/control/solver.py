@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The choice of solver for the quadratic programme; a solution is checked before it is used."""
 
 from safety_island.control.cholesky import factorize, solve_unconstrained

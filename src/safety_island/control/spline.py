@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Natural cubic splines over the arc length of a trajectory, curves sharing one elimination."""
 
 import math

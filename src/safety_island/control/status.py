@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Names of every state and reason that the kernels return as a number."""
 
 from enum import IntEnum, IntFlag

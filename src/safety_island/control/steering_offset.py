@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A constant offset of the steering sensor (optional): estimated, or taken from a topic."""
 
 import math

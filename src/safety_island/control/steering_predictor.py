@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Prediction of the present tyre angle from the commands that were sent."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Bounds of the quadratic programme: steering angle, and steering rate by curvature and speed."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Cleaning of a received trajectory: flaws of its points that its path has not.
 
 The check of a trajectory (``input_check``) asks for it; a trajectory without such flaws never comes

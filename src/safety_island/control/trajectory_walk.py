@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Walks along a list of ``POINT`` records: a pose ahead, the stop point, the pitch."""
 
 import math

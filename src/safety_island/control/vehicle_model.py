@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The three prediction models of the MPC, discretised by the bilinear transform.
 
 States: kinematics [lateral error, yaw error, steering angle]; kinematics without delay [lateral

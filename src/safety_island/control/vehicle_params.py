@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Parameters of the vehicle and of the controller node."""
 
 from __future__ import annotations

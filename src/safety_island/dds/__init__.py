@@ -1,1 +1,2 @@
+# SPDX-License-Identifier: Apache-2.0
 """DDS for the safety island: participant, publisher, subscription, QoS, configuration, topics."""

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The only place that touches the private C layer of cyclonedds: what discovery found.
 
 ``cyclonedds._clayer`` is not an API: it may change with any release. Hence the exact pin, and

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """CycloneDDS configuration from a few named settings, checked before the library sees it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Who else is in the domain: endpoints of other participants, as DDS discovery tells them."""
 
 from __future__ import annotations

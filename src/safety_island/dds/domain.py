@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """DDS domains of this process: one library object for each id, shared by its participants."""
 
 from __future__ import annotations

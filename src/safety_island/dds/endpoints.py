@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Publisher and subscription: serialized samples in and out, newest first served, all counted."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Errors of the DDS room that are not mistakes in a configuration."""
 
 from safety_island.errors import IslandError

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Faults on purpose: what a test or a campaign does to a live domain."""
 
 from __future__ import annotations

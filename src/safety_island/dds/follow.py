@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Follows the interfaces of a domain: one that goes and comes back is used again, and told.
 
 CycloneDDS looks at its interfaces once, when a domain starts. An interface that is made anew (a

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the library logs while it runs, brought into our form and throttled.
 
 It writes to the C stream ``stderr`` that a domain found when it was started, a line for each packet

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Why two endpoints on one topic do not match: type names, or policies that exclude each other."""
 
 from __future__ import annotations

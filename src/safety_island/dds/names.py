@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How ROS 2 names stand on the wire."""
 
 from __future__ import annotations

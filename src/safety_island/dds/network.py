@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Questions to the operating system about interfaces and hosts, answered with clear errors."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One participant in a DDS domain, seen by ROS 2 as one node."""
 
 from __future__ import annotations

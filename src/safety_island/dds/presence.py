@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How a participant shows itself as a ROS 2 node: ``ros2 node list``, ``ros2 topic info``."""
 
 from __future__ import annotations

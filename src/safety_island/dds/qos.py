@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Quality of service in few words, and the profiles that Autoware uses."""
 
 from __future__ import annotations

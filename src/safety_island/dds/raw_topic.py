@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Topics whose samples are serialized bytes, through the library's public C functions.
 
 A topic of a registered type has the library check every sample and swap a big-endian one; of an

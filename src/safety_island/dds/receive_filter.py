@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Closes the library's sockets to every network interface but those that it uses.
 
 CycloneDDS binds its receiving sockets to 0.0.0.0 whatever interface it is given, so without this

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the C library says on standard error while it starts: it says it nowhere else."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The one table of the island's topics: subscriptions, age limits, bridge file and docs use it."""
 
 from __future__ import annotations

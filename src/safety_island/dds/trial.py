@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Tries a configuration in a process of its own, since the library ends the process for some.
 
 A peer that does not resolve, for example, or the peer 0.0.0.0.

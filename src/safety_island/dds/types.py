@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Types of the message registry as CycloneDDS's own C descriptors, made at run time.
 
 A descriptor is a small program (``dds/ddsc/dds_opcodes.h``) by which the library checks serialized

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The user's own configuration: one or more parts, each a file or XML, checked before use.
 
 The library takes XML in a short form (``<Gen><Interfaces><Netw n="lo"/></></>``): names cut short,

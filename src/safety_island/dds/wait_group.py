@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One wait for the subscriptions of several participants, whatever their domains."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Keeps a reader's room for one writer: what others write does not get into its cache.
 
 All writers of a topic share a reader's cache, so one that floods it pushes out what another one

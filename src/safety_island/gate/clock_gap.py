@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How far the clock that stamps an input is from the island's wall clock."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Tells a sender whose clock was set from samples that arrive late: stamps of a clock advance."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a decoded sample must say beyond single values: its frame, its length, that it lives."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The frames in which positions and motions must be given."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The order of what is sent on change and kept for late readers: the operation mode.
 
 Nothing says it again, so no word may be lost, and no old word may come back into force. The rule:

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which of the samples that came between two ticks is looked at."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Whether an input comes as often as it should."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Why a sample was refused: every reason of the decoder, the gate and the controllers' own check.
 
 The table makes docs/status.md; the numbers are the places in ``refused`` of the status message.

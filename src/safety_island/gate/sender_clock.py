@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The clock by which the inputs of one sender are stamped, as far as their stamps agree.
 
 By its stamps alone, one input cannot tell a clock that runs slowly from a queue that builds up:

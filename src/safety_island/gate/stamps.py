@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The stamps of one input, in the order of arrival: newer, older, standing still, delayed.
 
 A stamp is never trusted for an age: its clock may be wrong. It orders samples, and a change of its

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is wrong with an input without ending the output; the bits stand in the status message."""
 
 from __future__ import annotations

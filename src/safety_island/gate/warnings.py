@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which warnings about an input stand now."""
 
 from __future__ import annotations

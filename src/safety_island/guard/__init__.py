@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The guard: independent checks between the controllers and the outputs."""
 
 from safety_island.guard.guard import Guard

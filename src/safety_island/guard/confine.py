@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A value and the intervals that it must lie in."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The guard itself: refuse, clamp or pass one command after the other."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the guard decides, and every check that it makes: what it means and what to do.
 
 The table makes docs/guard.md; the bits are those of the status message.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The usual command, told at little cost: one that keeps every limit, whatever the speed in detail.
 
 What this does not pass is judged in full; so it may ask for more than the limits do, never less

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The limits by speed: linear between the points, held outside."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a tick found out, as the life cycle is told it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What goes wrong in the island itself, and from when on it ends the output."""
 
 from __future__ import annotations

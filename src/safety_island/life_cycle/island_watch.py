@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Whether another island is on the domain, and which of the two was there first."""
 
 from __future__ import annotations

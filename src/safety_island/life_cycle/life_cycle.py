@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The life cycle at work: what a tick found out becomes conditions, and those a state."""
 
 from __future__ import annotations

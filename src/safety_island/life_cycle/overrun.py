@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Whether the ticks come in time."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The declared stop of CAN_ONLY: brake with a bounded jerk, hold at standstill, then silence."""
 
 from __future__ import annotations

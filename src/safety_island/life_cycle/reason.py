@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Why the island is in its state: every reason, what it means and what to do about it.
 
 The table makes docs/status.md and the sentences of ``island status --why``.

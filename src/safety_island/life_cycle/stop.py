@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What CAN_ONLY sends in place of the controllers' commands: the last one again, then the ramp."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How often or how long something has gone wrong without a break."""
 
 from __future__ import annotations

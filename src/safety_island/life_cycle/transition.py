@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The life cycle as one pure function: from state and conditions to the next state."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The request to leave SILENT, and what the status answers."""
 
 from __future__ import annotations

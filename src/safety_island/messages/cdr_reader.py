@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Plain CDR of either byte order to values of a described type, bounded against hostile lengths."""
 
 from __future__ import annotations

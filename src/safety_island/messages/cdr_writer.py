@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Values of a described type to little-endian plain CDR."""
 
 from __future__ import annotations

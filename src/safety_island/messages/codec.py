@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Any registered message to CDR bytes and back, driven by its description.
 
 For what is not hot: discovery data, tools, tests. The messages of a tick have codecs of their own

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Message types in one JSON file: what a built island reads instead of parsing the IDL files."""
 
 from __future__ import annotations

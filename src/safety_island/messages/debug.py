@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The messages of the debug topics: what Autoware's own tools look at."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a message type consists of, independent of any notation."""
 
 from __future__ import annotations

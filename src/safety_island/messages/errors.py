@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is said when bytes are no message, or a value does not fit one."""
 
 from __future__ import annotations

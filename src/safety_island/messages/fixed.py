@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Messages of fixed size as NumPy records: the type is the C struct, its bytes are the CDR body.
 
 Derived from the registry, so that a layout stands in one place, the IDL file.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Messages of a stamp, some strings, and a body of fixed size."""
 
 from __future__ import annotations

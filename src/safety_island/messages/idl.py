@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Reader for the IDL that ROS 2 generates: modules, structs, constants, annotations."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The five inputs of a tick: decoders that cost a few microseconds, and their encoders.
 
 Each decoder takes serialized plain CDR with its header, checks every length before it is used, and

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The messages that the island sends: the control command and a number for debugging."""
 
 from __future__ import annotations

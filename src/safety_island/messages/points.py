@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Trajectory points: their place on the wire, as NumPy types.
 
 Seen from the first ``position.x`` on, the data of a trajectory repeat every 88 bytes: pose, six

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The message types that are known at run time, by their ROS 2 names."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The island's own status: all of its values become the message in one stroke."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The status as Python values; units and meanings stand in ``msg/safety_island_msgs``."""
 
 from __future__ import annotations

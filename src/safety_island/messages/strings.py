@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The strings that follow the stamp of a message: the same in nearly every one of a topic."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The trajectory: a zero-copy view of the bytes, a copy in one stroke, and the encoder."""
 
 from __future__ import annotations

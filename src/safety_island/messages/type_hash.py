@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The ROS 2 type hash (RIHS01) of a message, as REP 2011 and rosidl define it."""
 
 from __future__ import annotations

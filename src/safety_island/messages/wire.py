@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Plain CDR (XCDR1): the encapsulation header, strings, time, and what every decoder checks."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Nodes: publishers, subscriptions and a timer on any platform, and the controller node."""
 
 from safety_island.node.controller import ControllerNode

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Requests to arm the island: each is answered once, in the status."""
 
 from __future__ import annotations

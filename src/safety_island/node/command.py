@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """From the follower's record to the message, and what keeps a command from being sent."""
 
 from __future__ import annotations

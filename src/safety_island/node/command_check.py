@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The last check before a command goes out, and what it says when one must not."""
 
 from __future__ import annotations

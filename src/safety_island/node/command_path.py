@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The way of a command: guard, life cycle, outputs; and what goes out in its place."""
 
 from __future__ import annotations

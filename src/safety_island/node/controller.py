@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The controller node: one tick after the other, in the order of the contract."""
 
 from __future__ import annotations

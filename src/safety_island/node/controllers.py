@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Both controllers of one tick, timed, with what they could not do."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Reasons in words, with the input that they are about."""
 
 from __future__ import annotations

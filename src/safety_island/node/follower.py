@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The trajectory follower as the node sees it: five inputs, two controllers, one command."""
 
 from __future__ import annotations

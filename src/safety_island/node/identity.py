@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Who else is in the domain: other islands, publishers of our inputs, and who does not match."""
 
 from __future__ import annotations

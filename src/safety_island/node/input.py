@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One input of the controller node at work.
 
 The way of a sample: of those that came since the last tick the newest, decode, gate (publisher,

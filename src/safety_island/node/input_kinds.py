@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The two kinds of inputs: what comes again and again, and what is sent on change."""
 
 from __future__ import annotations

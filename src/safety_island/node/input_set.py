@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The five inputs together: who publishes them, what is missing, too old, or out of place."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The part of the status that tells of the inputs."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is wrong with the inputs without ending the output: which warnings stand, and since when."""
 
 from __future__ import annotations

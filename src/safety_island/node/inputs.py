@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The table of the five inputs: how each is decoded, judged and handed on."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Topics in memory: the transport of the sim platform. The bytes are those of DDS."""
 
 from __future__ import annotations

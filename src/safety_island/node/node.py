@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A node: publishers, subscriptions and one timer, on any platform and any transport."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Where a command goes. Each output takes the same command; one that fails stops no other."""
 
 from __future__ import annotations

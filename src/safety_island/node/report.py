@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What one tick did: returned by the node, read by live views, tests and later the status."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A command on its way out: to every output, and taken back when silence follows."""
 
 from __future__ import annotations

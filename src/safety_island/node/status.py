@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the island tells of itself in every tick: its status, on a topic of its own."""
 
 from __future__ import annotations

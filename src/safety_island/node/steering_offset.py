@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The offset of the steering sensor, where a topic tells it (Autoware since 0.51).
 
 No tick waits for it: without a publisher the offset is zero, which is the same as off. A sample is

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """From the trace of the controllers to the status: errors, solver, states, limits that acted."""
 
 from __future__ import annotations

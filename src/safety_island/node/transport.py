@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a node needs of its topics: DDS offers it on a machine, plain memory in virtual time."""
 
 from __future__ import annotations

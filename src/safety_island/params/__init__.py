@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Parameter sets: Autoware's own YAML files, checked, over the sets that are shipped."""
 
 from safety_island.params.describe import Row, describe

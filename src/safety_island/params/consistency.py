@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What must hold between parameters, beyond the range of each."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Whether a value is allowed for a parameter, and which key a misspelt one was meant to be."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What ``island params show`` prints: each parameter with its value, its range and its origin."""
 
 from __future__ import annotations

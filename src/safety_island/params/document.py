@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Writes docs/parameters.md from the dataclasses, the rules and the shipped sets.
 
 ``python -m safety_island.params.document [FILE]``, docs/parameters.md when none is named.

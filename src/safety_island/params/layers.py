@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Layers of values, one over the other, with where each value comes from."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Parameters from Autoware's YAML files, over one of the shipped sets."""
 
 from __future__ import annotations

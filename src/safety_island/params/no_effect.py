@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Keys of Autoware's real files that have no effect here, each with the reason.
 
 They are accepted, so that those files load unchanged, and reported (``Loaded.ignored``). A key that

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Why a value of our default set is what it is, where the sets differ."""
 
 from dataclasses import fields

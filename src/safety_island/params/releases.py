@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which key of Autoware's files belongs to which releases, and what became of older keys.
 
 Sources: the tags of autoware_launch, and the history of the files in public repositories.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What one scalar of a parameter file means, and how a value is shown to a reader."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every known key, from the dataclasses: where it lives and what its value may be."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The text of a parameter file, and the name under which errors speak of it."""
 
 from __future__ import annotations

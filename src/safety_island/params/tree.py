@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Parameter files: ROS 2's own YAML, taken apart into keys with the line where each stands."""
 
 from __future__ import annotations

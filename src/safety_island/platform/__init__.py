@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The machine below the island: clock, timer, logger, network and CAN device, with backends.
 
 A backend is a row in ``BACKENDS`` and a folder with the same file names; it is imported when it is

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The fixed time grid of a timer: which tick is next, which were missed. Pure arithmetic."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the island asks of the machine below it: small interfaces, and the values they pass.
 
 A port to another machine replaces the backends of these and nothing else. Only this room reads a

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a log line looks like, and which lines are held back: shared by all loggers."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The signals that ask a process to end."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One SNTP exchange as bytes and numbers: the request, and what a reply must be to be believed.
 
 Format: RFC 5905, figure 8. Checks: RFC 5905, sections 7.4 and 8, and RFC 4330, section 5.

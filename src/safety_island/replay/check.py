@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Whether the arrays of a file make a recorded run; what is wrong is a ValueError that says it."""
 
 from __future__ import annotations

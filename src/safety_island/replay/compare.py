@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How close a replay came to a recording, and whether that is close enough.
 
 Tolerances: a run of ``unconstraint_fast`` must agree in every tick. OSQP itself was inexact in the

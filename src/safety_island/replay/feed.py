@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A recorded run fed through the real controller node: messages as bytes, time as recorded."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the guard did to the commands of a replay."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A recorded run: what went into the controllers tick by tick, and what came out.
 
 The files are NumPy archives without pickles; their arrays are described in ``docs/recordings.md``.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a replay gave, tick by tick, as CSV."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Controller, vehicle and planner in one loop on virtual time: no sockets, no clock, no threads."""
 
 from __future__ import annotations

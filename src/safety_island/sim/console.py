@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Lines on standard input that act on the main compute while it drives: mode, faults, the end."""
 
 from __future__ import annotations

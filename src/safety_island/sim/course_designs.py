@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The shapes of the courses: pieces of road, cruise speed, stops on the way."""
 
 from __future__ import annotations

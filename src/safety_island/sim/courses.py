@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The courses that the simulated vehicle can drive: paths, speeds and stops.
 
 A course is driven in legs. Each leg ends in a stop; its points begin some way behind the place

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Makes a course last about as long as is wanted: several laps, or an earlier stop."""
 
 from __future__ import annotations

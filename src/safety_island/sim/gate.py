@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The command gate between controller and vehicle: brakes when commands stop coming.
 
 It does in one place what Autoware's ``vehicle_cmd_gate`` and the fail-safe chain around it do: in

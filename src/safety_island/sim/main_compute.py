@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A stand-in for Autoware on its DDS domain: planner, vehicle, operation mode, command gate."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How well a course was driven: lateral error, speed, stops."""
 
 from __future__ import annotations

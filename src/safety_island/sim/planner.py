@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The planner of the simulation: publishes a window of the course and handles its stops."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The vehicle of the simulation: a kinematic bicycle behind lagging, delayed actuators.
 
 Not modelled: tyre slip, load transfer, limits of steering angle and rate, engine and brake maps,

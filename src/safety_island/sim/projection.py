@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Where a vehicle is along a leg: station, lateral error, height and slope of the road."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Pieces of road as curvature and grade along the arc length, and the path they make together.
 
 A piece is sampled every ``SPACING`` metres. Curvature changes by smooth ramps (continuous with its

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The speed along a path: as fast as curvature and accelerations allow, zero at its end."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The vehicle on its course behind a command gate, driven by commands as they come."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Events as the processes of a demo report them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the keys do, and the reactions that are seen."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The demo of a target with CAN output: frames stand beside the commands."""
 
 from __future__ import annotations

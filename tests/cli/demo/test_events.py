@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The demo's state follows what its processes report."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Each condition of a good demo, met and not met."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Keys of a real terminal; its mode is restored however the process ends."""
 
 from __future__ import annotations

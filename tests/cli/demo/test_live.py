@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The demo as a person starts it: three processes on loopback."""
 
 from __future__ import annotations

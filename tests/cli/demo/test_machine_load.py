@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Work of other programs is told from the demo's own."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The plot is a well-formed, self-contained SVG file with the curves of the drive."""
 
 from __future__ import annotations

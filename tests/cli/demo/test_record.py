@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The CSV file of a drive: columns with units, a row at each status, events beside them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The demo's processes are started, listened to and ended, whatever happens to them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The live view and the plain lines show what is known at every stage."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Statuses to show, and something that sends them in place of an island."""
 
 from __future__ import annotations

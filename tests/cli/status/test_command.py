@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``island status`` against a sender of statuses, over DDS on loopback."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Why an input does not come, as discovery knows it: without DDS, and with real publishers."""
 
 from __future__ import annotations

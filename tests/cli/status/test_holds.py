@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What holds a vehicle whose commands are sent: by its status, and as the node makes it."""
 
 from __future__ import annotations

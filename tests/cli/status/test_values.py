@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A status as JSON: names for numbers, null for what has no value."""
 
 from __future__ import annotations

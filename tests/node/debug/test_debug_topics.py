@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The debug topics against what Autoware's controllers told in recorded runs."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A network namespace for one test: a function runs in it, in a process of its own."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the tests of the network do inside a network namespace of their own."""
 
 from __future__ import annotations

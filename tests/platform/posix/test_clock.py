@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The machine's clocks: a suspended machine is noticed."""
 
 from __future__ import annotations

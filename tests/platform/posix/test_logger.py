@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The writing thread: what it does when its sink fails, and how it ends."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """An address that comes late, in a network namespace of the test's own."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Addresses from a real DHCP server, from none, static ones and VLANs, in network namespaces."""
 
 from __future__ import annotations

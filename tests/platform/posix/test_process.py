@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """SIGINT, SIGTERM and SIGHUP reach the callback and end a timer's wait."""
 
 from __future__ import annotations

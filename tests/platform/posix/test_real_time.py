@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Real-time scheduling: what a process takes where it may, and what it says where it may not.
 
 Each case runs in a process of its own: a fixed priority must not stay with the tests.

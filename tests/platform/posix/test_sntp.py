@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """SNTP over UDP: with Debian's chrony as the server, and with servers that lie."""
 
 from __future__ import annotations

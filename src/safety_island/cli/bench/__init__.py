@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``island bench``: measurements on this machine, as ratios to a yardstick of the same run."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``island demo``: three processes, one live view, no configuration."""
 
 from __future__ import annotations

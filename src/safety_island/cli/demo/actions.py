@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the keys of the live view do, and the reactions that are seen."""
 
 from __future__ import annotations

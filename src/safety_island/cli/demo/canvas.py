@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A map of a course in braille characters, two by four dots each, with the vehicle on it."""
 
 from __future__ import annotations

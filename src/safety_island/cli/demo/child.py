@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One process of the demo: started, listened to, ended."""
 
 from __future__ import annotations

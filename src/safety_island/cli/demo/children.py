@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The three processes of the demo and their command lines."""
 
 from __future__ import annotations

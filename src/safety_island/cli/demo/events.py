@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the demo knows, fed by the JSON lines of its three processes."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Whether a demo went well, each condition with its figures."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Single keys from a terminal, whose mode is restored however the demo ends."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How busy the machine is with other work than the demo's."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The plot of a drive as one SVG file: path, lateral error, speed, steering angle, guard."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a drive leaves behind: a CSV file row by row, and the rows for a plot."""
 
 from __future__ import annotations

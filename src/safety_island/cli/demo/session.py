@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Runs the processes of the demo until the course is driven, time is up, or one dies."""
 
 from __future__ import annotations

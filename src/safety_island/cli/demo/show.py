@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Shows a running demo: as a live view, or as plain lines."""
 
 from __future__ import annotations

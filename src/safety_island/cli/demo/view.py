@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The live view of the demo in a terminal, laid out for the size of its window."""
 
 from __future__ import annotations

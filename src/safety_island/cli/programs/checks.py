@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the test program checks: a node's timer, a topic over DDS, the way to a command."""
 
 from __future__ import annotations

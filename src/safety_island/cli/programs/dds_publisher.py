@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Publishes sample messages of the five inputs in a loop, at the rates of the real ones."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Logs each message that it receives on the topics of the island."""
 
 from __future__ import annotations

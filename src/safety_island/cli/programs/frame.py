@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the test programs have in common: arguments, an orderly end, errors as one line."""
 
 from __future__ import annotations

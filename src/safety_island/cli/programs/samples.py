@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Sample messages of the island's topics: a vehicle that drives straight on at 5 m/s."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Tests on the machine at hand that the node works: timer, every topic over DDS, a whole tick."""
 
 from __future__ import annotations

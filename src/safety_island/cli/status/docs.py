@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the code says of itself, for the generated page: members of enumerations, fields."""
 
 from __future__ import annotations

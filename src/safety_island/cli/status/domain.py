@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What discovery knows of the publishers of the inputs: why nothing comes from them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The numbers that belong to a reason."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What keeps a vehicle from driving freely although commands are sent and autonomous mode is on.
 
 The table makes docs/status.md and the sentences of ``island status --why``.

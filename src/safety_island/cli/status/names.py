@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Names of the numbers in a status; a number of a newer island keeps its digits."""
 
 from __future__ import annotations

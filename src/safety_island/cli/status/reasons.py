@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The tables of reasons as sentences of a terminal: the subject named, no back-ticks."""
 
 from __future__ import annotations

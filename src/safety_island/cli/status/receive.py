@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Receives the status of an island, bounded in time."""
 
 from __future__ import annotations

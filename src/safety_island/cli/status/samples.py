@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the status tells of the inputs, in words."""
 
 from __future__ import annotations

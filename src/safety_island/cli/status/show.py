@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Shows statuses as they come: as a live view, as plain lines, or as JSON lines."""
 
 from __future__ import annotations

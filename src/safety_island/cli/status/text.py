@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The figures of a status as texts, shared by the terminal view and the plain lines."""
 
 from __future__ import annotations

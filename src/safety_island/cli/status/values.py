@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A status as named values, for JSON."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The live view of a status in a terminal."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One sentence: why nothing is being published, what holds the vehicle, or that all is well."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The statuses of the topic /diagnostics, by the names that Autoware's monitors know."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A trajectory follower whose memory may be read between two ticks."""
 
 from __future__ import annotations

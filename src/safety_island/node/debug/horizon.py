@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the MPC of the last tick foresees: its reference, its commands and the path they lead to.
 
 Autoware: calculatePredictedTrajectoryInWorldCoordinate, clipTrajectoryByLength (mpc.cpp and its

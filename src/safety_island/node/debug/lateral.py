@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The numbers of the topic lateral_diagnostic. Autoware: MPC::generateDiagData."""
 
 from __future__ import annotations

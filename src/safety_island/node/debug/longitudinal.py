@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The numbers of the topic longitudinal_diagnostic. Autoware: DebugValues of the PID controller."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Publishes the debug topics after each tick: an observer of the node, made when asked for."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The platform of an ordinary Linux machine: real time, real sockets."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """SocketCAN through the standard library."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A logger whose lines a thread of its own writes, so that a slow terminal never delays a tick."""
 
 from __future__ import annotations

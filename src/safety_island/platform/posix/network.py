@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The machine's network interfaces, as the Linux kernel tells them."""
 
 from __future__ import annotations

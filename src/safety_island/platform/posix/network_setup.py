@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Static addresses, VLANs and default routes, set over netlink with pyroute2.
 
 What is set stays when the process ends, as with the ``ip`` command.

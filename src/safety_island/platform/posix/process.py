@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How a process is told to end, and how it ends."""
 
 from __future__ import annotations

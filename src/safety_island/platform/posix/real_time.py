@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Real-time scheduling: a fixed priority, a processor core, memory that stays in place.
 
 The thread that calls is the control thread. Every other thread of the process gets a fixed priority

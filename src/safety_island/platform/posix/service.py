@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a service manager is told, in the protocol of systemd's ``sd_notify``."""
 
 from __future__ import annotations

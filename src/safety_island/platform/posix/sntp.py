@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One SNTP exchange over UDP; it moves the island's wall clock, never the machine's."""
 
 from __future__ import annotations

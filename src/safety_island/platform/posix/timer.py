@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A timer on the machine's monotonic clock."""
 
 from __future__ import annotations

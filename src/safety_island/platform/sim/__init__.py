@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The platform of virtual time: one thread, no wall clock, no sockets, the same result always."""
 
 from __future__ import annotations

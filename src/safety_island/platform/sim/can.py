@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A CAN device that records its frames."""
 
 from __future__ import annotations

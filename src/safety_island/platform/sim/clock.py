@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Virtual time: it moves only when a timer waits or a test says so."""
 
 from __future__ import annotations

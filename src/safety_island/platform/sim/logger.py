@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A logger that keeps its lines in memory."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A simulated process gets no signals; a simulation stops its node by calling it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A timer whose waiting moves virtual time on."""
 
 from __future__ import annotations
