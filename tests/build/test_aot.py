@@ -68,10 +68,10 @@ def test_a_kernel_is_called_with_records_and_numbers(library: Path) -> None:
     points = np.zeros(MAX_POINTS, POINT)
     points["qw"] = 1.0
     points["x"] = np.arange(MAX_POINTS)
-    assert call(params, points, 5) == Refusal.ACCEPTED
-    assert call(params, points, np.int64(1)) == Refusal.TOO_FEW_POINTS
+    assert call(params, points, 5, 0.0) == Refusal.ACCEPTED
+    assert call(params, points, np.int64(1), 0.0) == Refusal.TOO_FEW_POINTS
     points["x"][3] = np.nan
-    assert call(params, points, 5) == Refusal.NOT_FINITE
+    assert call(params, points, 5, 0.0) == Refusal.NOT_FINITE
 
 
 def test_an_array_is_looked_at_again_when_its_place_in_memory_is_taken_by_another(
@@ -82,11 +82,11 @@ def test_an_array_is_looked_at_again_when_its_place_in_memory_is_taken_by_anothe
         points = np.zeros(4, POINT)
         points["qw"] = 1.0
         points["x"] = np.arange(4)
-        assert call(params, points, 4) == Refusal.ACCEPTED
+        assert call(params, points, 4, 0.0) == Refusal.ACCEPTED
         del points
         wrong = np.zeros(4, PARAMS)
         with pytest.raises(TypeError, match="argument 2"):
-            call(params, wrong, 4)
+            call(params, wrong, 4, 0.0)
 
 
 READ_ONLY = np.zeros(4, POINT)
@@ -111,11 +111,11 @@ def test_what_is_no_record_array_is_refused_before_the_kernel_runs(
 ) -> None:
     call, params = check(library), pack_parameters(load_set("default"))
     with pytest.raises(TypeError, match="check_trajectory: argument 2"):
-        call(params, points, 2)
+        call(params, points, 2, 0.0)
     with pytest.raises((TypeError, ValueError)):
         call(params)
     with pytest.raises(TypeError):
-        call(params, np.zeros(4, POINT), 2.5)
+        call(params, np.zeros(4, POINT), 2.5, 0.0)
 
 
 def test_a_kernel_that_the_library_has_not_is_named(library: Path) -> None:

@@ -103,9 +103,9 @@ int main(void) {
   }
   for (int i = 0; i < 65; i++)
     if (safety_island_sources[i] != SAFETY_ISLAND_SOURCES[i]) return 100;
-  if (safety_island_check_trajectory(&params, points, 1) != SAFETY_ISLAND_REFUSAL_TOO_FEW_POINTS)
-    return 101;
-  return safety_island_check_trajectory(&params, points, 5);
+  int32_t refusal = safety_island_check_trajectory(&params, points, 1, 0.0);
+  if (refusal != SAFETY_ISLAND_REFUSAL_TOO_FEW_POINTS) return 101;
+  return safety_island_check_trajectory(&params, points, 5, 0.0);
 }
 """
 

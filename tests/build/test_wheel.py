@@ -203,10 +203,10 @@ CALL = """
 #include <stdio.h>
 #include <stdlib.h>
 extern const char safety_island_sources[65];
-int32_t safety_island_check_trajectory(void *, void *, int64_t);
+int32_t safety_island_check_trajectory(void *, void *, int64_t, double);
 int main(void) {
   void *params = calloc(1, 1 << 20), *points = calloc(1, 1 << 20);
-  printf("%s %d\\n", safety_island_sources, safety_island_check_trajectory(params, points, 1));
+  printf("%s %d\\n", safety_island_sources, safety_island_check_trajectory(params, points, 1, 0.0));
   return 0;
 }
 """

@@ -193,7 +193,7 @@ class Reactions:
     def _island(self, since: float) -> str:
         tick = self._state.tick
         reason, subject = Reason[tick["reason"]], tick.get("subject")
-        text = f"island {tick['life']} after {since:.2f} s"
+        text = f"island {tick['state']} after {since:.2f} s"
         bound = self._bound_s(reason, subject)
         if bound is not None and tick["state"] == "SILENT":
             text += f", bound {bound:.2f} s"
