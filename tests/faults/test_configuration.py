@@ -17,7 +17,7 @@ from safety_island.can.dbc import dbc_text
 from safety_island.can.dbc_check import check_dbc
 from safety_island.cli.main import main
 from safety_island.params.schema import KNOWN, Known
-from tests.params.files import copy_of_set, parameter_file, refused
+from tests.params.files import copy_of_set, may_be_missing, parameter_file, refused
 
 Output = pytest.CaptureFixture[str]
 
@@ -53,11 +53,22 @@ def test_row_67_each_missing_key(tmp_path: Path) -> None:
         lines = text.splitlines()
         for number in value_lines(lines):
             path.write_text("\n".join(lines[:number] + lines[number + 1 :]) + "\n")
+            count += 1
+            if may_be_missing(key_of_line(lines, number), "default"):
+                continue
             told = refused(list(files.values()), None)
             assert any(": is missing; expected " in line and str(path) in line for line in told)
-            count += 1
         path.write_text(text)
     assert count == len(KNOWN)
+
+
+def key_of_line(lines: list[str], number: int) -> str:
+    """Return the key of a line with the name of the map that it stands in."""
+    match = re.match(r"( +)(\w+):", lines[number])
+    assert match
+    above = [line for line in lines[:number] if re.match(r" {4}\w+: *(#.*)?$", line)]
+    prefix = f"{above[-1].strip().partition(':')[0]}." if len(match[1]) > 4 else ""
+    return prefix + match[2]
 
 
 def value_lines(lines: list[str]) -> Iterator[int]:

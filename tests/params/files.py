@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from safety_island.params import ParameterError, read
+from safety_island.params import ParameterError, load_set, read
+from safety_island.params.releases import RELEASE, SPANS
 from safety_island.params.sets import FILES, OWN, file_of_key
 
 OWN_KEYS = {key for key, file in file_of_key().items() if file in OWN}
@@ -47,3 +48,9 @@ def refused(files: list[Path], base: str | None = "default") -> list[str]:
         read(files, base)
     assert caught.value.exit_code == 2
     return str(caught.value).splitlines()
+
+
+def may_be_missing(key: str, set_name: str) -> bool:
+    """Whether the set's release does not have the key, or other keys stand for its value."""
+    release = load_set(set_name).node.autoware_release
+    return key == RELEASE or (key in SPANS and not SPANS[key].holds(release))

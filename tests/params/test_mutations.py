@@ -10,11 +10,10 @@ from pathlib import Path
 
 import pytest
 
-from safety_island.params import SETS, load_set, read
-from safety_island.params.releases import RELEASE, SPANS
+from safety_island.params import SETS, read
 from safety_island.params.schema import KNOWN, Known
 from safety_island.params.sets import FILES
-from tests.params.files import copy_of_set, refused, shipped_text
+from tests.params.files import copy_of_set, may_be_missing, refused, shipped_text
 
 _LINE = re.compile(r"^( +)(\w+):(.*)$")
 _WRONG_TYPE = {
@@ -131,12 +130,6 @@ def test_keys_that_stand_twice(tmp_path: Path, set_name: str, file: str) -> None
     for i, (line, told) in enumerate(zip(lines, refused([path], set_name), strict=True)):
         second = f"{path}:{line.number + i + 1}: {line.known.key}: found a second time, first at "
         assert told.startswith(f"{second}{path}:{line.number + i};"), told
-
-
-def may_be_missing(key: str, set_name: str) -> bool:
-    """Whether the set's release does not have the key, or other keys stand for its value."""
-    release = load_set(set_name).node.autoware_release
-    return key == RELEASE or (key in SPANS and not SPANS[key].holds(release))
 
 
 @EVERY_FILE
