@@ -186,7 +186,7 @@ def test_topics_go_on_after_the_drive_until_the_console_is_closed(neighbour: Nei
 
         def engaged() -> bool:
             neighbour.command(1.0)
-            return bool(neighbour.status("mode") == "AUTONOMOUS")
+            return bool(neighbour.status("operation_mode") == "AUTONOMOUS")
 
         wait_for(engaged)
         console.has_ended = True
