@@ -21,8 +21,7 @@ COMMANDS = (
     ("params", "check"),
     ("run", "--platform", "sim", "--duration", "0.01", "--params"),
     ("run", "--domain"),
-    ("run", "--interface"),
-    ("bridge",),
+    ("bridge", "--duration", "0.1"),
     ("replay",),
 )
 
