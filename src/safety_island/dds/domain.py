@@ -10,13 +10,11 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 
-from cyclonedds.core import DDSException
-from cyclonedds.domain import Domain
-
-from safety_island.dds import binding
 from safety_island.dds.config import DdsConfig, check_domain_id, defaults_xml
 from safety_island.dds.errors import DdsError
 from safety_island.dds.follow import InterfaceSockets, follow
+from safety_island.dds.library.entity import checked, delete
+from safety_island.dds.library.loading import loaded
 from safety_island.dds.network import unknown_peer
 from safety_island.dds.receive_filter import opened_sockets
 from safety_island.dds.stderr import captured_log
@@ -27,7 +25,7 @@ from safety_island.errors import ConfigurationError
 
 @dataclass
 class _Open:
-    domain: Domain
+    domain: int
     sockets: InterfaceSockets
     xml: str
     users: int
@@ -43,7 +41,6 @@ def open_domain(domain_id: int, config: DdsConfig) -> None:
     Raises ConfigurationError with the library's own words when it refuses the configuration.
     """
     check_domain_id(domain_id)
-    binding.check_version()
     xml = _effective_xml(domain_id, config)
     with _lock:
         found = _open.get(domain_id)
@@ -77,7 +74,7 @@ def close_domain(domain_id: int) -> None:
         found.users -= 1
         if not found.users:
             del _open[domain_id]
-            binding.delete(found.domain)
+            delete(found.domain)
 
 
 def _effective_xml(domain_id: int, config: DdsConfig) -> str:
@@ -109,17 +106,18 @@ def _look_at_interfaces() -> None:
                 print(f"island: DDS domain {domain_id}: {line}", file=sys.stderr, flush=True)
 
 
-def _start(domain_id: int, xml: str) -> tuple[Domain, InterfaceSockets]:
+def _start(domain_id: int, xml: str) -> tuple[int, InterfaceSockets]:
     """Start the library's domain, and close its sockets to all interfaces but those it uses."""
+    library = loaded()
     try:
         with opened_sockets() as opened, captured_log(bool(_TRACING.search(xml))) as said:
-            domain = Domain(domain_id, xml)
-    except DDSException as problem:
+            domain = checked(library.dds_create_domain(domain_id, xml.encode("ascii")), "refused")
+    except DdsError as problem:
         raise ConfigurationError(_explain(domain_id, said.cause or str(problem))) from None
     try:
         return domain, InterfaceSockets(opened)
     except DdsError:
-        binding.delete(domain)
+        delete(domain)
         raise
 
 

@@ -9,10 +9,8 @@ from __future__ import annotations
 import signal
 import subprocess
 import sys
-from typing import Any
 
-from cyclonedds.internal import DDS
-
+from safety_island.dds.library.loading import loaded
 from safety_island.dds.stderr import cause
 
 _LIMIT_S = 60.0
@@ -29,8 +27,8 @@ library.dds_create_domain(int(sys.argv[2]), sys.argv[3].encode())
 
 def why_fatal(domain_id: int, xml: str) -> str | None:
     """Return what the library says when a configuration ends its process; None when it does not."""
-    library: Any = DDS._dll_handle
-    command = [sys.executable, "-I", "-S", "-c", _START, library._name, str(domain_id), xml]
+    library = str(loaded().path)
+    command = [sys.executable, "-I", "-S", "-c", _START, library, str(domain_id), xml]
     try:
         tried = subprocess.run(
             command, stdin=subprocess.DEVNULL, capture_output=True, timeout=_LIMIT_S, check=False
