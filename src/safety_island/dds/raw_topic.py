@@ -12,19 +12,20 @@ import ctypes as ct
 from typing import NamedTuple
 
 from safety_island.dds.errors import DdsError
-from safety_island.dds.library.entity import RETCODE_BAD_PARAMETER, checked, strerror
+from safety_island.dds.library.entity import RETCODE_BAD_PARAMETER, RETCODE_ERROR, checked, strerror
 from safety_island.dds.library.layouts import (
     ALIVE,
     ANY,
+    DATA,
     DISPOSED,
     NO_WRITERS,
     SampleInfo,
     Vector,
 )
 from safety_island.dds.library.loading import Library, loaded
+from safety_island.dds.library.release import Release
 from safety_island.dds.types import descriptor_of, opaque_descriptor
 
-_DATA = 2
 _NO_CONTENT = bytes(1)
 """In place of a sample where only its key counts, and it has none."""
 _BATCH = 64
@@ -103,13 +104,20 @@ def write(writer: int, data: bytes) -> int:
     """Write serialized CDR (header included) and return 0 or a negative return code."""
     if len(data) < _MINIMUM_WRITE:
         return RETCODE_BAD_PARAMETER
-    data, library = filled(data), loaded()
+    library = loaded()
+    if library.release is Release.V0_10:
+        code: int = library.dds_writecdr(writer, library.envelope.around(filled(data)))
+        return RETCODE_BAD_PARAMETER if code == RETCODE_ERROR else code
+    return _write_as_type(library, writer, filled(data))
+
+
+def _write_as_type(library: Library, writer: int, data: bytes) -> int:
     sertype = ct.c_void_p()
     code: int = library.dds_get_entity_sertype(writer, sertype)
     if code < 0:
         return code
     vector = Vector(data, len(data))
-    serialized = library.ddsi_serdata_from_ser_iov(sertype, _DATA, 1, vector, len(data))
+    serialized = library.ddsi_serdata_from_ser_iov(sertype, DATA, 1, vector, len(data))
     if not serialized:
         return RETCODE_BAD_PARAMETER
     code = library.dds_writecdr(writer, serialized)

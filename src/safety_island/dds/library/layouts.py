@@ -26,6 +26,9 @@ ANY_INSTANCE = ALIVE | DISPOSED | NO_WRITERS
 ANY = ANY_SAMPLE | ANY_VIEW | ANY_INSTANCE
 """Masks of samples, by what the reader and the writers did to them."""
 
+DATA = 2
+"""``SDK_DATA``: a sample that is more than its key."""
+
 
 class Guid(ct.Structure):
     """``dds_guid_t``"""

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from safety_island.dds.errors import DdsError
+from safety_island.dds.library.envelope import Envelope
 from safety_island.dds.library.find import find
 from safety_island.dds.library.functions import NEWER, PROTOTYPES, SERTYPE
 from safety_island.dds.library.release import Release
@@ -46,6 +47,11 @@ class Library:
     def release(self) -> Release:
         """Which line of releases it is of: it does not say, but one has what the other lacks."""
         return Release.V11 if hasattr(self.handle, SERTYPE) else Release.V0_10
+
+    @cached_property
+    def envelope(self) -> Envelope:
+        """How this library takes serialized bytes when it tells nothing of a writer's type."""
+        return Envelope(self.handle)
 
 
 _chosen: Path | None = None
