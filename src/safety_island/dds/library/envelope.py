@@ -44,10 +44,9 @@ class Envelope:
     """
 
     def __init__(self, library: ct.CDLL) -> None:
-        version = ct.cast(getattr(library, _VERSION), ct.c_void_p).value
-        self._type_operations = (ct.c_void_p * 16)(version)
+        self._type_operations = (ct.c_void_p * 16)(_address(library, _VERSION))
         self._type = (ct.c_void_p * 16)(ct.addressof(self._type_operations))
-        self._operations = ct.addressof(ct.c_char.in_dll(library, _OPERATIONS))
+        self._operations = _address(library, _OPERATIONS)
         self._length, self._bytes = self._places(library)
 
     def around(self, data: bytes) -> ct.Array[ct.c_char]:
@@ -77,3 +76,7 @@ class Envelope:
         if length not in places or start not in places or start <= length:
             raise DdsError(f"{library._name}: how this libddsc keeps serialized samples is unknown")
         return length, start
+
+
+def _address(library: ct.CDLL, name: str) -> int | None:
+    return ct.cast(getattr(library, name), ct.c_void_p).value
