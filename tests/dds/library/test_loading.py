@@ -39,6 +39,12 @@ def test_a_file_that_is_no_library(tmp_path: Path) -> None:
     assert "\n" not in str(refused.value)
 
 
+def test_a_library_of_ros_2_that_needs_its_setup_file() -> None:
+    path = Path("/opt/ros/jazzy/lib/libddsc.so")
+    with pytest.raises(ConfigurationError, match=r"source the setup file of this ROS 2 first$"):
+        Library(path)
+
+
 def test_a_library_of_something_else() -> None:
     libc = next(Path("/").glob("lib/*-linux-gnu/libc.so.6"))
     with pytest.raises(ConfigurationError, match=r"is no libddsc of CycloneDDS 0\.10 or 11: it"):

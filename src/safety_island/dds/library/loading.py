@@ -27,7 +27,7 @@ class Library:
         try:
             self.handle = ct.CDLL(str(path))
         except OSError as problem:
-            raise ConfigurationError(f"{path} cannot be loaded: {problem}") from None
+            raise ConfigurationError(f"{path} cannot be loaded: {problem}{_hint(path)}") from None
         lacking = [name for name in PROTOTYPES if not hasattr(self.handle, name)]
         if lacking:
             raise ConfigurationError(
@@ -52,6 +52,10 @@ class Library:
     def envelope(self) -> Envelope:
         """How this library takes serialized bytes when it tells nothing of a writer's type."""
         return Envelope(self.handle)
+
+
+def _hint(path: Path) -> str:
+    return "; source the setup file of this ROS 2 first" if path.is_relative_to("/opt/ros") else ""
 
 
 _chosen: Path | None = None
