@@ -124,7 +124,7 @@ def _create(domain_id: int, xml: str) -> int:
     library = loaded()
     try:
         with captured_log(bool(_TRACING.search(xml))) as said:
-            return checked(library.dds_create_domain(domain_id, xml.encode("ascii")), "refused")
+            return checked(library.dds_create_domain(domain_id, xml.encode()), "refused")
     except DdsError as problem:
         raise ConfigurationError(_explain(domain_id, said.cause or str(problem))) from None
 
