@@ -14,13 +14,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from safety_island.control import aot, kernel
-from safety_island.control.aot import LIBRARY_NAME, VARIABLE, Library
 from safety_island.control.input_check import check_trajectory
 from safety_island.control.limits import MAX_POINTS
 from safety_island.control.records import PARAMS, POINT, pack_parameters
 from safety_island.control.status import Refusal
 from safety_island.errors import ConfigurationError
+from safety_island.kernel import kernel
+from safety_island.kernel import library as libraries
+from safety_island.kernel.library import LIBRARY_NAME, VARIABLE, Library
 from safety_island.params import load_set
 
 ROOT = Path(__file__).parents[2]
@@ -126,7 +127,7 @@ def test_a_kernel_that_the_library_has_not_is_named(library: Path) -> None:
 def test_a_library_of_other_sources_is_refused(
     library: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(aot, "sources_hash", lambda: "0" * 64)
+    monkeypatch.setattr(libraries, "sources_hash", lambda: "0" * 64)
     with pytest.raises(ConfigurationError, match="made from other kernel sources"):
         Library(library)
 
@@ -151,10 +152,10 @@ def test_the_environment_names_the_library_and_plain_python_wins(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.delenv(VARIABLE, raising=False)
-    assert aot.find_library() is None
+    assert libraries.find_library() is None
     monkeypatch.setenv(VARIABLE, str(tmp_path / "a.so"))
-    assert aot.find_library() == tmp_path / "a.so"
-    code = "from safety_island.control.kernel import JIT, LIBRARY; print(JIT, LIBRARY)"
+    assert libraries.find_library() == tmp_path / "a.so"
+    code = "from safety_island.kernel.kernel import JIT, LIBRARY; print(JIT, LIBRARY)"
     environment = COMPILED | {VARIABLE: "/nowhere.so", "SAFETY_ISLAND_JIT": "0"}
     said = subprocess.check_output([sys.executable, "-c", code], env=environment, text=True)
     assert said.split() == ["False", "None"]

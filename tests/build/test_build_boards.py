@@ -21,8 +21,8 @@ from safety_island.build.machines import BOARDS, CORTEX_R52, X86_64
 from safety_island.build.pipeline import ARCHIVE_NAME
 from safety_island.build.products import UNIT_TEST
 from safety_island.build.targets import TARGETS
-from safety_island.control.aot import LIBRARY_NAME
 from safety_island.control.status import Refusal
+from safety_island.kernel.library import LIBRARY_NAME
 
 KERNELS = tuple(entry.name for entry in entries())
 FUNCTIONS = tuple(f"safety_island_{name}" for name in KERNELS)

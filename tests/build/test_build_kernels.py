@@ -18,8 +18,8 @@ from safety_island.build.errors import BuildError
 from safety_island.build.kernel_compile import compile_into, kernel_irs
 from safety_island.build.kernel_objects import kernel_objects
 from safety_island.build.machines import CORTEX_R52, X86_64, host
-from safety_island.control import kernel
 from safety_island.control.records import POINT, record
+from safety_island.kernel import kernel
 
 pytestmark = pytest.mark.timeout(600)  # the first of a session compiles the kernels
 
@@ -75,7 +75,6 @@ def test_the_cause_of_a_failed_compilation_is_one_line(tmp_path: Path) -> None:
         return int(allocate(points[n]))
 
     entry = kernel.Entry(bad, (POINT, int), True)
-    kernel.ON_DEMAND.remove(entry)
     with pytest.raises(Exception, match="zeros") as caught:
         kernel_ir.ir_of(entry)
     text = kernel_ir.essence(str(caught.value))

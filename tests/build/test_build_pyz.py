@@ -15,7 +15,7 @@ import pytest
 
 from safety_island import __version__
 from safety_island.build.built import built
-from safety_island.control import kernel
+from safety_island.kernel import kernel
 from tests.build import pyz_process
 
 NAME = "safety-island.pyz"

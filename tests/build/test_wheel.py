@@ -23,8 +23,9 @@ from safety_island.build.errors import BuildError
 from safety_island.build.kernel_compile import entries
 from safety_island.build.machines import AARCH64, X86_64, Machine, host
 from safety_island.build.wheel import build_wheel, check_portable, tag
-from safety_island.control.aot import LIBRARY_NAME, sources_hash
 from safety_island.control.status import Refusal
+from safety_island.kernel.library import LIBRARY_NAME, LIBRARY_PLACE
+from safety_island.kernel.sources import sources_hash
 from tests.build.installed import ROOT, Installation, hatchling, unpacked
 
 pytestmark = pytest.mark.timeout(900)  # the first of a session compiles the kernels
@@ -170,7 +171,7 @@ def test_the_platform_wheel_is_tagged_for_what_its_library_needs(platform_wheel:
     assert metadata(platform_wheel, "WHEEL").get_all("Tag") == [f"py3-none-{tag(host())}"]
     assert platform_wheel.name.endswith(f"py3-none-{tag(host())}.whl")
     with zipfile.ZipFile(platform_wheel) as archive:
-        library = archive.read(f"safety_island/control/{LIBRARY_NAME}")
+        library = archive.read(f"safety_island/{LIBRARY_PLACE}")
     check_library(library, host())
 
 
@@ -195,7 +196,7 @@ def test_the_wheel_for_the_other_processor_is_linked_here(tmp_path: Path) -> Non
     made = build_wheel(other, tmp_path, say)
     assert made.name.endswith(f"-py3-none-manylinux_2_31_{other.name}.whl")
     with zipfile.ZipFile(made) as archive:
-        check_library(archive.read(f"safety_island/control/{LIBRARY_NAME}"), other)
+        check_library(archive.read(f"safety_island/{LIBRARY_PLACE}"), other)
 
 
 CALL = """
@@ -221,7 +222,7 @@ def test_the_kernels_in_the_wheel_for_aarch64_run(tmp_path: Path) -> None:
     made = build_wheel(AARCH64, tmp_path, say)
     with zipfile.ZipFile(made) as archive:
         library = tmp_path / LIBRARY_NAME
-        library.write_bytes(archive.read(f"safety_island/control/{LIBRARY_NAME}"))
+        library.write_bytes(archive.read(f"safety_island/{LIBRARY_PLACE}"))
     (tmp_path / "call.c").write_text(CALL)
     link = ["aarch64-linux-gnu-gcc", "-o", "call", "call.c", LIBRARY_NAME, "-lm"]
     subprocess.run(link, cwd=tmp_path, check=True)

@@ -13,7 +13,8 @@ from safety_island.build.c_constants import enumerations, sizes
 from safety_island.build.c_records import CRecords
 from safety_island.build.errors import BuildError
 from safety_island.build.kernel_compile import entries
-from safety_island.control.aot import PREFIX, SOURCES, sources_hash
+from safety_island.kernel.library import PREFIX, SOURCES
+from safety_island.kernel.sources import sources_hash
 
 NAME = "safety_island_control.h"
 

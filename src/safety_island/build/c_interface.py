@@ -8,9 +8,9 @@ from typing import Any
 
 from safety_island.build.errors import BuildError
 from safety_island.build.kernel_ir import NATIVE
-from safety_island.control.aot import PREFIX
 from safety_island.control.limits import MAX_POINTS
 from safety_island.control.records import POINT
+from safety_island.kernel.library import PREFIX
 
 RAISED = "kernel.raised"
 """Called where a kernel has raised an exception: it exists nowhere."""

@@ -16,7 +16,7 @@ from safety_island.build.kernel_ir import NATIVE
 from safety_island.build.kernel_names import shorten
 from safety_island.build.machines import Machine
 from safety_island.build.support_routines import routines_for
-from safety_island.control.aot import PREFIX, SOURCES
+from safety_island.kernel.library import PREFIX, SOURCES
 
 
 @cache

@@ -8,7 +8,7 @@ import json
 from safety_island.build.built import ABOUT, DOTCONFIG, FOLDER
 from safety_island.build.dependencies import files, packages
 from safety_island.build.revision import PACKAGE, Revision, package_files
-from safety_island.control.aot import LIBRARY_NAME
+from safety_island.kernel.library import LIBRARY_NAME, LIBRARY_PLACE
 from safety_island.messages import compiled
 
 _NAME = PACKAGE.name
@@ -31,7 +31,7 @@ def content(target: str, revision: Revision, made: dict[str, bytes]) -> dict[str
     found |= {
         f"{_NAME}/{FOLDER}/{ABOUT}": (json.dumps(about, sort_keys=True) + "\n").encode(),
         f"{_NAME}/{FOLDER}/{DOTCONFIG}": made[DOTCONFIG],
-        f"{_NAME}/control/{LIBRARY_NAME}": made[LIBRARY_NAME],
+        f"{_NAME}/{LIBRARY_PLACE}": made[LIBRARY_NAME],
         f"{_NAME}/messages/{compiled.NAME}": made[compiled.NAME],
     }
     return found

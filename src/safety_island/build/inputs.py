@@ -14,7 +14,7 @@ from safety_island.build.kconfig import Resolved
 from safety_island.build.linker import find_compiler
 from safety_island.build.products import Product
 from safety_island.build.revision import PACKAGE, Revision, tree_hash
-from safety_island.control.aot import sources_hash
+from safety_island.kernel.sources import sources_hash
 
 _COMPILERS = ("llvmlite", "numba", "numpy")
 

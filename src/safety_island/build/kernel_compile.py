@@ -20,7 +20,7 @@ from typing import IO
 
 from safety_island.build import kernel_ir
 from safety_island.build.errors import BuildError
-from safety_island.control import kernel
+from safety_island.kernel import kernel
 
 Report = Callable[[str, int, int], None]
 """Told the name of a kernel, its index and the count, before it is compiled."""
@@ -47,8 +47,7 @@ def entries(on_demand: bool = False) -> list[kernel.Entry]:
     import safety_island.control.follower
     import safety_island.control.qp_alone  # noqa: F401  (these two define every entry)
 
-    more = [item for item in kernel.ON_DEMAND if item.is_own()] if on_demand else []
-    return kernel.ENTRIES + more
+    return kernel.ENTRIES + (kernel.ON_DEMAND if on_demand else [])
 
 
 def kernel_irs(report: Report, on_demand: bool = False) -> dict[str, str]:

@@ -23,7 +23,7 @@ def main(folder: Path, names: list[str]) -> int:
     """Compile the named entries (all without names); 1 when one cannot be compiled."""
     import safety_island.control.follower
     import safety_island.control.qp_alone  # noqa: F401  (these two define every entry)
-    from safety_island.control import kernel
+    from safety_island.kernel import kernel
 
     for entry in kernel.ENTRIES + kernel.ON_DEMAND:
         if names and entry.name not in names:
@@ -43,7 +43,7 @@ def ir_of(entry: Any) -> str:
     import llvmlite.binding as llvm
     import numba
 
-    from safety_island.control.kernel import FLAGS
+    from safety_island.kernel.kernel import FLAGS
 
     signature = numba.int32(*entry.signature())
     options: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}

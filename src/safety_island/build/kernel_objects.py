@@ -12,7 +12,7 @@ from safety_island.build.elf import ElfFile, read_elf
 from safety_island.build.errors import BuildError
 from safety_island.build.kernel_compile import Report, entries, ir_folder, kernel_irs
 from safety_island.build.machines import Machine
-from safety_island.control.aot import sources_hash
+from safety_island.kernel.sources import sources_hash
 
 SOURCES = "sources"
 """The object that tells the hash of the kernel sources."""

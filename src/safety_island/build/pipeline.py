@@ -30,8 +30,8 @@ from safety_island.build.message_header import message_header
 from safety_island.build.products import APPLICATION, Product
 from safety_island.build.pyz import write_pyz
 from safety_island.build.revision import revision
-from safety_island.control.aot import LIBRARY_NAME
 from safety_island.extras import require
+from safety_island.kernel.library import LIBRARY_NAME
 from safety_island.messages import compiled, registry
 
 Say = Callable[[str], None]

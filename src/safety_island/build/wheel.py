@@ -22,8 +22,8 @@ from safety_island.build.kernel_objects import kernel_objects
 from safety_island.build.linker import GLIBC, ZIG, link_shared, needed_compiler
 from safety_island.build.machines import Machine
 from safety_island.build.revision import source_tree
-from safety_island.control.aot import LIBRARY_NAME
 from safety_island.extras import require
+from safety_island.kernel.library import LIBRARY_NAME
 
 Say = Callable[[str], None]
 """Told each step, in words."""

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The one place that knows how control kernels are compiled.
+"""The one place that knows how kernels are compiled.
 
 A kernel is written in the part of Python that Numba compiles: scalars, ``float64`` arrays and
 records in, a status code out, nothing allocated. It has three lives: compiled in process; plain
 Python (``SAFETY_ISLAND_JIT=0``); and taken from a library that was compiled ahead of time (see
-``aot.py``), where Numba is not even imported. ``_nrt=False`` takes Numba's memory manager away, so
-a kernel that allocates an array does not compile; that private option is one reason for the exact
-version pin.
+``library.py``), where Numba is not even imported. ``_nrt=False`` takes Numba's memory manager away,
+so a kernel that allocates an array does not compile; that private option is one reason for the
+exact version pin.
 """
 
 from __future__ import annotations
@@ -17,17 +17,17 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from safety_island.control import aot
 from safety_island.extras import require
+from safety_island.kernel import library
 
 if TYPE_CHECKING:
-    from safety_island.control.kernel_cache import Place
+    from safety_island.kernel.cache import Place
 
 _CHOICE = os.environ.get("SAFETY_ISLAND_JIT", "")
 """``0``: plain Python; ``1``: compiled here, whatever library there is; nothing: as it comes."""
 _PLAIN = _CHOICE == "0"
 
-LIBRARY = None if _CHOICE else aot.find_library()
+LIBRARY = None if _CHOICE else library.find_library()
 """The library of kernels that were compiled ahead of time, None when there is none."""
 
 JIT = not _PLAIN and LIBRARY is None
@@ -44,9 +44,9 @@ ON_DEMAND: list[Entry] = []
 
 def cache_folder() -> Path:
     """Where compiled kernels are kept, keyed by the hash of what they come from."""
-    from safety_island.control import kernel_cache
+    from safety_island.kernel import cache
 
-    return kernel_cache.cache_folder()
+    return cache.cache_folder()
 
 
 def cache_note() -> str:
@@ -62,9 +62,9 @@ def is_kept() -> bool:
 
 def _place() -> Place:
     """Return where they are looked for; imports the compiler."""
-    from safety_island.control import kernel_cache
+    from safety_island.kernel import cache
 
-    return kernel_cache.place()
+    return cache.place()
 
 
 def _njit(**options: Any) -> Callable[[Any], Any]:
@@ -74,7 +74,7 @@ def _njit(**options: Any) -> Callable[[Any], Any]:
         require("compile", "control without a library of compiled kernels")
         raise
 
-    from safety_island.control.kernel_cache import LOCATOR
+    from safety_island.kernel.cache import LOCATOR
 
     settings: Any = numba.config
     settings.CACHE_LOCATOR_CLASSES = LOCATOR
@@ -105,11 +105,8 @@ class Entry:
         self._dispatcher: Any = None
         if JIT:
             self._dispatcher = _njit(cache=_place().folder is not None)(function)
-        (ON_DEMAND if on_demand else ENTRIES).append(self)
-
-    def is_own(self) -> bool:
-        """Whether it is one of the island's, not of a test."""
-        return self.python.__module__.startswith("safety_island.")
+        if function.__module__.startswith("safety_island."):  # not one that a test defines
+            (ON_DEMAND if on_demand else ENTRIES).append(self)
 
     def signature(self) -> tuple[Any, ...]:
         """The Numba types of the arguments."""
@@ -143,7 +140,7 @@ class Entry:
         if self.call is not self.python:
             return
         if LIBRARY is not None:
-            self.call = aot.library(LIBRARY).function(self.name, self.arguments)
+            self.call = library.load(LIBRARY).function(self.name, self.arguments)
         elif self._dispatcher is not None:
             self._load_or_compile()
             self._dispatcher.disable_compile()
@@ -157,9 +154,9 @@ class Entry:
                 return
             except Exception:  # a damaged file; a fault of the kernel itself shows again below
                 self._dispatcher._cache.flush()
-        from safety_island.control import kernel_cache
+        from safety_island.kernel import cache
 
-        with kernel_cache.lock(self.name) as is_ours:
+        with cache.lock(self.name) as is_ours:
             if not is_ours:
                 self._dispatcher._cache.disable()
             elif self._index() is None:
@@ -173,7 +170,7 @@ class Entry:
         TypeError when one is not what the entry was defined with, or cannot be written.
         """
         for position, (dtype, array) in enumerate(zip(self.arguments, arrays, strict=False), 1):
-            aot.require_records(f"{self.name}: argument {position}", dtype, array)
+            library.require_records(f"{self.name}: argument {position}", dtype, array)
         self.prepare()
         function = self.call
         if self._dispatcher is not None:

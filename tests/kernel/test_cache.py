@@ -5,68 +5,44 @@ from __future__ import annotations
 
 import importlib.util
 import os
-import shutil
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from safety_island.control import kernel
 from safety_island.errors import ConfigurationError
 
 pytest.importorskip("numba")
-CONTROL = Path(kernel.__file__).parent
 needs_root = pytest.mark.skipif(os.geteuid() != 0, reason="gives files away, as only root may")
 STRANGER = 4242
 
 
-def module(folder: Path) -> Any:
-    """The module that keeps the cache, from a copy of the kernel sources."""
-    spec = importlib.util.spec_from_file_location("a_copy", folder / "kernel_cache.py")
+def module() -> Any:
+    """The module that keeps the cache, as a process that has just started has it."""
+    spec = importlib.util.find_spec("safety_island.kernel.cache")
     assert spec is not None and spec.loader is not None
     loaded = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(loaded)
     return loaded
 
 
-@pytest.fixture
-def sources(tmp_path: Path) -> Path:
-    """A copy of the kernel sources."""
-    return Path(shutil.copytree(CONTROL, tmp_path / "control"))
-
-
-def key(sources: Path) -> str:
-    return str(module(sources).source_hash())
-
-
-def test_a_copy_of_the_same_sources_finds_the_same_code(sources: Path) -> None:
-    assert key(sources) == key(CONTROL)
-
-
-@pytest.mark.parametrize("name", ["geometry.py", "lateral.py", "records.py", "kernel.py"])
-def test_any_edit_of_a_source_is_another_folder(sources: Path, name: str) -> None:
-    """Also in a file that only an imported function stands in."""
-    before = key(sources)
-    with (sources / name).open("a") as file:
-        file.write("# one more\n")
-    assert key(sources) != before
-
-
-def test_a_new_source_is_another_folder_and_a_note_is_not(sources: Path) -> None:
-    before = key(sources)
-    (sources / "notes.txt").write_text("not compiled")
-    assert key(sources) == before
-    (sources / "another.py").write_text("LIMIT = 1\n")
-    assert key(sources) != before
+def key() -> str:
+    return str(module().code_hash())
 
 
 @pytest.mark.parametrize("library", ["numba", "np"])
 def test_another_version_of_a_library_is_another_folder(
-    sources: Path, library: str, monkeypatch: pytest.MonkeyPatch
+    library: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    before, loaded = key(sources), module(sources)
+    before, loaded = key(), module()
     monkeypatch.setattr(getattr(loaded, library), "__version__", "0.0.0")
-    assert loaded.source_hash() != before
+    assert loaded.code_hash() != before
+
+
+def test_other_sources_are_another_folder() -> None:
+    before, loaded = key(), module()
+    loaded.sources_hash = lambda: "0" * 64
+    assert loaded.code_hash() != before
 
 
 @pytest.mark.parametrize(
@@ -89,8 +65,8 @@ def test_the_place_is_chosen_by_the_environment(
     for name, value in variables.items():
         monkeypatch.setenv(name, str(tmp_path / value) if value else "")
     monkeypatch.delenv("XDG_RUNTIME_DIR", raising=False)
-    folder, note = module(CONTROL).place()
-    assert folder == tmp_path / expected / f"kernels-{key(CONTROL)}"
+    folder, note = module().place()
+    assert folder == tmp_path / expected / f"kernels-{key()}"
     assert folder.is_dir() and list(folder.iterdir()) == []
     assert note == "" and folder.stat().st_mode & 0o777 == 0o700
 
@@ -114,7 +90,7 @@ def runtime(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_a_place_that_cannot_be_written_is_replaced_by_the_users_own_and_told(
     blocked: Path, runtime: Path
 ) -> None:
-    folder, note = module(CONTROL).place()
+    folder, note = module().place()
     assert folder is not None and folder.parent == runtime and folder.is_dir()
     assert note.startswith(f"{blocked / 'below'}") and "cannot be made: Not a directory" in note
     assert f"compiled code is kept in {folder}" in note and "\n" not in note
@@ -124,7 +100,7 @@ def test_no_place_at_all_is_told_and_nothing_is_left_in_a_shared_folder(
     blocked: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.delenv("XDG_RUNTIME_DIR", raising=False)
-    loaded = module(CONTROL)
+    loaded = module()
     folder, note = loaded.place()
     assert folder is None and "each start compiles it (set SAFETY_ISLAND_CACHE" in note
     with pytest.raises(ConfigurationError, match="SAFETY_ISLAND_CACHE"):
@@ -135,7 +111,7 @@ def test_no_place_at_all_is_told_and_nothing_is_left_in_a_shared_folder(
 def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """The folder of these sources, made."""
     monkeypatch.setenv("SAFETY_ISLAND_CACHE", str(tmp_path / "cache"))
-    folder: Path = module(CONTROL).cache_folder()
+    folder: Path = module().cache_folder()
     return folder
 
 
@@ -144,7 +120,7 @@ def test_row_90_a_folder_that_others_can_write_to_is_not_used_and_told(
 ) -> None:
     """Its files are pickles: who can write them runs code as this user."""
     cache.chmod(0o777)
-    folder, note = module(CONTROL).place()
+    folder, note = module().place()
     assert folder is not None and folder.parent == runtime
     assert note.startswith(f"{cache} can be written by others (mode 777): ")
 
@@ -152,7 +128,7 @@ def test_row_90_a_folder_that_others_can_write_to_is_not_used_and_told(
 @needs_root
 def test_row_90_a_folder_of_another_user_is_not_used_and_told(cache: Path, runtime: Path) -> None:
     os.chown(cache, STRANGER, STRANGER)
-    folder, note = module(CONTROL).place()
+    folder, note = module().place()
     assert folder is not None and folder.parent == runtime
     assert note.startswith(f"{cache} belongs to user {STRANGER}, not to 0: ")
 
@@ -162,7 +138,7 @@ def test_row_90_a_file_of_another_user_in_it_is_not_loaded(cache: Path, runtime:
     planted = cache / "longitudinal.longitudinal_step-1.py311.nbi"
     planted.write_bytes(b"")
     os.chown(planted, STRANGER, STRANGER)
-    folder, note = module(CONTROL).place()
+    folder, note = module().place()
     assert folder is not None and folder.parent == runtime
     assert note.startswith(f"{planted} belongs to user {STRANGER}")
 
@@ -173,14 +149,14 @@ def test_row_90_a_runtime_folder_of_another_user_is_not_used_either(
 ) -> None:
     runtime.parent.mkdir()
     os.chown(runtime.parent, STRANGER, STRANGER)
-    folder, note = module(CONTROL).place()
+    folder, note = module().place()
     assert folder is None and f"belongs to user {STRANGER}" in note
 
 
 def test_row_90_a_lock_file_that_is_a_link_is_not_opened(cache: Path, tmp_path: Path) -> None:
     victim = tmp_path / "victim"
     victim.write_text("precious")
-    loaded = module(CONTROL)
+    loaded = module()
     loaded.place()
     (cache / "step.lock").symlink_to(victim)
     with loaded.lock("step") as is_ours:
@@ -189,7 +165,7 @@ def test_row_90_a_lock_file_that_is_a_link_is_not_opened(cache: Path, tmp_path: 
 
 
 def test_one_process_at_a_time_has_the_lock_and_the_next_one_does_not_wait(cache: Path) -> None:
-    loaded = module(CONTROL)
+    loaded = module()
     with loaded.lock("step") as first, loaded.lock("step") as second, loaded.lock("other") as other:
         assert (first, second, other) == (True, False, True)
         assert loaded.lock_holder("step") == os.getpid()

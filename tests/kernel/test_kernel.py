@@ -15,7 +15,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from safety_island.control import kernel
 from safety_island.control.follower import TrajectoryFollower
 from safety_island.control.input_check import check_trajectory
 from safety_island.control.records import (
@@ -27,9 +26,11 @@ from safety_island.control.records import (
     pack_parameters,
 )
 from safety_island.control.status import Refusal
+from safety_island.kernel import kernel
 from tests.control.lateral_rig import line
 from tests.golden.harness import firmware
 
+pytestmark = pytest.mark.timeout(600)  # the first of a session compiles the kernels
 SOURCES = Path(kernel.__file__).parents[2]
 needs_jit = pytest.mark.skipif(not kernel.JIT, reason="kernels are not compiled in this process")
 
@@ -184,7 +185,7 @@ def test_compiled_code_is_found_on_disk(tmp_path: Path) -> None:
     kernel.prepare()
     assert kernel.is_cached()
     code = (
-        "import safety_island.control.follower; from safety_island.control import kernel;"
+        "import safety_island.control.follower; from safety_island.kernel import kernel;"
         "print(kernel.is_cached())"
     )
     assert python(code, SAFETY_ISLAND_CACHE=str(tmp_path)) == ["False"]
@@ -252,7 +253,7 @@ def test_a_damaged_file_is_made_anew(kept: Path, ending: str) -> None:
 def test_code_in_a_folder_of_root_that_cannot_be_written_is_loaded(tmp_path: Path) -> None:
     """As in an image that was prepared when it was made. A user without rights asks."""
     code = (
-        "import os; from safety_island.control import kernel, kernel_cache as c;"
+        "import os; from safety_island.kernel import kernel, cache as c;"
         "os.setgid(4242); os.setuid(4242); c.place.cache_clear();"
         "print(c.place().folder, kernel.is_kept(), c.place().note == '')"
     )
@@ -278,7 +279,7 @@ def test_plain_python_needs_no_compiler() -> None:
     """``SAFETY_ISLAND_JIT=0``: the same functions, and Numba is not even imported."""
     code = (
         "import sys; import safety_island.control.follower as f;"
-        "from safety_island.control import kernel;"
+        "from safety_island.kernel import kernel;"
         "from safety_island.params import load_set;"
         "f.TrajectoryFollower(load_set('default'));"
         "note = kernel.cache_note() == '';"
@@ -286,3 +287,13 @@ def test_plain_python_needs_no_compiler() -> None:
         "all(e.call is e.python for e in kernel.ENTRIES), note)"
     )
     assert python(code, SAFETY_ISLAND_JIT="0") == ["False", "True", "False", "True", "True"]
+
+
+def test_a_kernel_of_a_test_is_not_one_of_the_island() -> None:
+    """A start, a build and the cache would look for its code where there is none."""
+
+    @kernel.entry(float)
+    def mine(number: Any) -> Any:
+        return int(number)
+
+    assert mine not in kernel.ENTRIES + kernel.ON_DEMAND

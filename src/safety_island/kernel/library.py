@@ -9,7 +9,6 @@ made from and is refused with any others.
 from __future__ import annotations
 
 import ctypes
-import hashlib
 import operator
 import os
 import weakref
@@ -21,10 +20,13 @@ from typing import Any
 import numpy as np
 
 from safety_island.errors import ConfigurationError
+from safety_island.kernel.sources import PACKAGE, sources_hash
 
 VARIABLE = "SAFETY_ISLAND_KERNELS"
 """Environment variable that names the library."""
 LIBRARY_NAME = "libsafety_island_control.so"
+LIBRARY_PLACE = f"kernel/{LIBRARY_NAME}"
+"""Where an installed island has it, in the package."""
 PREFIX = "safety_island_"
 """What every symbol of the library begins with."""
 SOURCES = f"{PREFIX}sources"
@@ -43,14 +45,6 @@ def find_library() -> Path | None:
         return Path(named)
     own = Path(__file__).with_name(LIBRARY_NAME)
     return own if own.exists() else None
-
-
-def sources_hash() -> str:
-    """Return the hash of every source of this room."""
-    digest = hashlib.sha256()
-    for source in sorted(Path(__file__).parent.glob("*.py")):
-        digest.update(source.name.encode() + b"\0" + source.read_bytes())
-    return digest.hexdigest()
 
 
 def require_records(place: str, dtype: Any, array: Any) -> None:
@@ -100,7 +94,7 @@ class Library:
             ) from None
         if ctypes.string_at(ctypes.addressof(found)).decode() != sources_hash():
             raise ConfigurationError(
-                f"{path}: made from other kernel sources than {Path(__file__).parent}; "
+                f"{path}: made from other kernel sources than those in {PACKAGE}; "
                 "make it again with: island build -t posix"
             )
         self.path = path
@@ -134,6 +128,6 @@ class Library:
 
 
 @cache
-def library(path: Path) -> Library:
+def load(path: Path) -> Library:
     """Return the library of a path, loaded once."""
     return Library(path)

@@ -24,6 +24,7 @@ import numpy as np
 from numba.core.caching import _CacheLocator
 
 from safety_island.errors import ConfigurationError
+from safety_island.kernel.sources import sources_hash
 from safety_island.private_folder import distrust, make_private
 
 LOCATOR = f"{__name__}.Locator"
@@ -39,12 +40,10 @@ class Place(NamedTuple):
 
 
 @cache
-def source_hash() -> str:
-    """Hash of every kernel source and of the versions of Numba and NumPy; read once."""
-    digest = hashlib.sha256(f"{numba.__version__} {np.__version__}".encode())
-    for source in sorted(Path(__file__).parent.glob("*.py")):
-        digest.update(source.read_bytes())
-    return digest.hexdigest()[:16]
+def code_hash() -> str:
+    """Hash of all that compiled code depends on: kernel sources, versions of Numba and NumPy."""
+    made_of = f"{numba.__version__} {np.__version__} {sources_hash()}"
+    return hashlib.sha256(made_of.encode()).hexdigest()[:16]
 
 
 @cache
@@ -55,7 +54,7 @@ def place() -> Place:
     """
     reasons: list[str] = []
     for root in _roots():
-        folder = root / f"kernels-{source_hash()}"
+        folder = root / f"kernels-{code_hash()}"
         try:
             make_private(folder)
             why = distrust(folder)
@@ -145,7 +144,7 @@ class Locator(_CacheLocator):
 
     def get_source_stamp(self) -> str:
         """The hash."""
-        return source_hash()
+        return code_hash()
 
     def get_disambiguator(self) -> str:
         """Tells functions of one name apart."""
