@@ -31,7 +31,7 @@ def run(name: str, purpose: str, body: Body) -> int:
             stop = StopFlag()
             with on_stop(stop.set):
                 start.disarm()
-                return body(arguments, DdsConfig(interface=arguments.interface or None), stop)
+                return body(arguments, DdsConfig(interface=arguments.interface), stop)
     except IslandError as error:
         for line in str(error).splitlines():
             print(f"{name}: error: {line}", file=sys.stderr)
@@ -49,7 +49,8 @@ def _parser(name: str, purpose: str) -> Parser:
     options.add_domain(parser, domain, "the safety island")
     parser.add_argument(
         "--interface",
-        default=interface,
+        type=options.interface,
+        default=interface or None,
         metavar="NAME",
         help=f"network interface (default: {interface or 'the library chooses'})",
     )
