@@ -119,5 +119,7 @@ def execute(arguments: argparse.Namespace) -> int:
     with StopAtOnce() as start:
         from safety_island.cli.run_island import run
 
-        run(arguments, start)
+        rejoin = run(arguments, start)
+    if rejoin.is_due:
+        rejoin.start_again()
     return 0
