@@ -201,13 +201,13 @@ def test_result_is_that_of_kconfiglib_alone(row: Target, places: Places) -> None
 @pytest.mark.parametrize(
     ("line", "told"),
     [
-        ("CONFIG_LOGLEVEL=2", "unknown symbol CONFIG_LOGLEVEL; did you mean CONFIG_LOG_LEVEL?"),
+        ("CONFIG_LOGLEVEL=2", "unknown symbol CONFIG_LOGLEVEL; did you mean 'CONFIG_LOG_LEVEL'?"),
         ("CONFIG_NOSUCH=y", "unknown symbol CONFIG_NOSUCH; see 'island config show'"),
         (
             "CONFIG_NET_IFACE1_ADR=2",
-            "unknown symbol CONFIG_NET_IFACE1_ADR; did you mean CONFIG_NET_",
+            "unknown symbol CONFIG_NET_IFACE1_ADR; did you mean 'CONFIG_NET_",
         ),
-        ("CONFIG_LOG_LEVL=2", "unknown symbol CONFIG_LOG_LEVL; did you mean CONFIG_LOG_LEVEL?"),
+        ("CONFIG_LOG_LEVL=2", "unknown symbol CONFIG_LOG_LEVL; did you mean 'CONFIG_LOG_LEVEL'?"),
         ("CONFIG_CONTROL_CMD_OUTPUT_MODE=y", "CONFIG_CONTROL_CMD_OUTPUT_MODE is a choice: set one"),
         ("CONFIG_CAN=y", "CONFIG_CAN cannot be set: it follows from CONFIG_CONTROL_CMD_OUTPUT_CAN"),
         ("CONFIG_CONTROL_CMD_DDS_OUTPUT=n", "CONFIG_CONTROL_CMD_DDS_OUTPUT cannot be set"),

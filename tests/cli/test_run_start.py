@@ -78,7 +78,7 @@ def test_a_mistyped_interface_is_told_at_once_and_waited_for_up_to_the_limit(
         *_, error = process.stderr
     for line in (waiting, error):
         assert "interface 'lo0'" in line and "this machine has " in line
-        assert "did you mean lo?" in line
+        assert "did you mean 'lo'?" in line
     assert error.startswith("island: error: interface 'lo0' has no IPv4 address after 1 s")
     assert process.returncode == 1
 

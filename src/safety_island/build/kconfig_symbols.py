@@ -10,7 +10,6 @@ import gc
 import re
 import warnings
 from collections.abc import Iterator
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +18,7 @@ import kconfiglib
 from safety_island.build import kconfig_zephyr
 from safety_island.build.kconfig_fragment import PREFIX, Assignment, quote, shown, unquote
 from safety_island.errors import ConfigurationError
+from safety_island.words import did_you_mean
 
 Value = bool | int | str
 
@@ -147,9 +147,11 @@ def _unknown(kconfig: Any, name: str) -> str:
         members = ", ".join(f"{PREFIX}{symbol.name}=y" for symbol in choice.syms)
         return f"{PREFIX}{name} is a choice: set one of {members}"
     known = [symbol.name for symbol in kconfig.unique_defined_syms if has_prompt(symbol)]
-    near = get_close_matches(name, known, n=1)
-    hint = f"did you mean {PREFIX}{near[0]}?" if near else "see 'island config show'"
-    return f"unknown symbol {PREFIX}{name}; {hint}"
+    hint = (
+        did_you_mean(PREFIX + name, [PREFIX + other for other in known])
+        or "; see 'island config show'"
+    )
+    return f"unknown symbol {PREFIX}{name}{hint}"
 
 
 def _causes(kconfig: Any, symbol: Any) -> Iterator[str]:

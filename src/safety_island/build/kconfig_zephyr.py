@@ -8,9 +8,9 @@ two from one of the island's is a mistake, whatever it begins with.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from difflib import get_close_matches
 
 from safety_island.build.kconfig_fragment import PREFIX, Assignment
+from safety_island.words import nearest
 
 NAMED = 3
 """Symbols that a note names; the others are counted."""
@@ -40,7 +40,7 @@ _WORDS = frozenset(_FIRST_WORDS.split())
 def is_zephyrs(name: str, ours: Sequence[str]) -> bool:
     """Whether a symbol that is not ``ours`` belongs to Zephyr."""
     begins_so = name.partition("_")[0] in _WORDS
-    return begins_so and not get_close_matches(name, ours, n=1, cutoff=_TYPING_ERROR)
+    return begins_so and nearest(name, ours, _TYPING_ERROR) is None
 
 
 def notes(assignments: Iterable[Assignment]) -> list[str]:

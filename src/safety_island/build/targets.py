@@ -3,10 +3,10 @@
 
 from __future__ import annotations
 
-from difflib import get_close_matches
 from typing import NamedTuple
 
 from safety_island.errors import ConfigurationError
+from safety_island.words import did_you_mean
 
 
 class Target(NamedTuple):
@@ -36,6 +36,5 @@ def find_target(name: str) -> Target:
     for target in TARGETS:
         if target.name == name:
             return target
-    near = get_close_matches(name, NAMES, n=1)
-    hint = f"; did you mean '{near[0]}'?" if near else ""
+    hint = did_you_mean(name, NAMES)
     raise ConfigurationError(f"unknown target '{name}', expected one of {', '.join(NAMES)}{hint}")
