@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from safety_island.kernel.sources import PACKAGE, ROOMS, hash_of, sources_hash
+from safety_island.kernel.sources import ROOMS, hash_of, sources_hash
+from safety_island.package import PACKAGE
 
 
 @pytest.fixture

@@ -20,7 +20,8 @@ from typing import Any
 import numpy as np
 
 from safety_island.errors import ConfigurationError
-from safety_island.kernel.sources import PACKAGE, sources_hash
+from safety_island.kernel.sources import sources_hash
+from safety_island.package import PACKAGE
 
 VARIABLE = "SAFETY_ISLAND_KERNELS"
 """Environment variable that names the library."""

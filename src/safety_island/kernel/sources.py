@@ -11,7 +11,8 @@ import hashlib
 from functools import cache
 from pathlib import Path
 
-PACKAGE = Path(__file__).parents[1]
+from safety_island.package import PACKAGE
+
 ROOMS = ("kernel", "control")
 """Folders of the package that hold kernels, or what they take constants from."""
 

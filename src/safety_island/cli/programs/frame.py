@@ -7,12 +7,12 @@ import argparse
 import sys
 from collections.abc import Callable
 
-from safety_island.build.built import built
 from safety_island.cli import options
 from safety_island.cli.parser import Parser
 from safety_island.cli.stopping import StopAtOnce, StopFlag
 from safety_island.dds.config import DdsConfig
 from safety_island.errors import IslandError
+from safety_island.targets.package.built import built
 
 DOMAIN, INTERFACE = 2, "lo"
 """Used from sources; a built program has those of its configuration."""
