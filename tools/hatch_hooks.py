@@ -20,8 +20,8 @@ LIBRARY = "SAFETY_ISLAND_WHEEL_LIBRARY"
 """Environment variable: path of the library to carry."""
 TAG = "SAFETY_ISLAND_WHEEL_TAG"
 """Environment variable: the platform that the library runs on, such as manylinux_2_31_x86_64."""
-PLACE = "safety_island/control/libsafety_island_control.so"
-"""Where the program looks for it (``safety_island.control.aot``)."""
+PLACE = "safety_island/kernel/libsafety_island_control.so"
+"""Where the program looks for it (``safety_island.kernel.library``)."""
 _PAGES = {"Documentation": "/blob/main/docs", "Changelog": "/blob/main/CHANGELOG.md"}
 _RELATIVE = re.compile(r"\]\((?![a-z]+:|#)([^)]+)\)")
 

@@ -239,7 +239,7 @@ def test_monitor_of_a_bus_that_falls_silent_alarms(form: list[str], capsys: Capt
 
 
 def test_monitor_without_its_file(capsys: Capture) -> None:
-    assert island("monitor", "/nowhere.log") == 1
+    assert island("monitor", "/nowhere.log") == 2
     assert capsys.readouterr().err == (
         "island: error: /nowhere.log: cannot be read: No such file or directory\n"
     )

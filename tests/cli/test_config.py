@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from safety_island.build.kconfig import resolve
-from safety_island.build.kconfig_places import Places
-from safety_island.build.targets import NAMES
 from safety_island.cli.main import main
+from safety_island.targets.kconfig.places import Places
+from safety_island.targets.kconfig.resolve import resolve
+from safety_island.targets.kconfig.targets import NAMES
 
 Capture = pytest.CaptureFixture[str]
 
@@ -19,7 +19,9 @@ Capture = pytest.CaptureFixture[str]
 @pytest.fixture(autouse=True)
 def _nothing_saved(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """What a developer chose in the menu must not change what these tests see."""
-    monkeypatch.setattr("safety_island.build.kconfig.Places", lambda: Places(build=tmp_path))
+    monkeypatch.setattr(
+        "safety_island.targets.kconfig.resolve.Places", lambda: Places(build=tmp_path)
+    )
 
 
 @pytest.mark.parametrize("target", NAMES)

@@ -47,6 +47,7 @@ def test_values(parser: Parser) -> None:
     [
         *(("--domain", value) for value in ("-1", "233", "x", "1.5", "", "²")),
         *(("--period", value) for value in ("0", "-1", "nan", "inf", "1.01", "0.0009", "x")),
+        *(("--interface", value) for value in ("", ".", "a b", "a/b", "a:1", "e" * 16, "ä" * 8)),
         *(("--duration", value) for value in ("-1", "nan", "inf", "soon")),
     ],
 )

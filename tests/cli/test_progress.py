@@ -16,7 +16,7 @@ import pytest
 
 from safety_island.cli import progress
 from safety_island.cli.process import seconds_since_start
-from safety_island.control import kernel, kernel_cache
+from safety_island.kernel import cache, kernel
 
 Capture = pytest.CaptureFixture[str]
 
@@ -56,7 +56,7 @@ def test_kernels_without_compiled_code_are_compiled_in_processes_of_their_own(
 @pytest.fixture
 def held(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
     """A kernel of which another process holds the lock."""
-    monkeypatch.setattr(kernel_cache, "place", lambda: kernel_cache.Place(tmp_path, ""))
+    monkeypatch.setattr(cache, "place", lambda: cache.Place(tmp_path, ""))
     (tmp_path / "step.lock").touch(0o600)
     command = ["flock", str(tmp_path / "step.lock"), "sh", "-c", "echo held; exec cat"]
     with subprocess.Popen(command, stdin=PIPE, stdout=PIPE, text=True) as holder:
@@ -83,7 +83,7 @@ def test_row_90_waiting_for_another_process_is_told_and_ends_at_a_limit(
 def test_a_lock_that_is_free_is_not_waited_for(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Capture
 ) -> None:
-    monkeypatch.setattr(kernel_cache, "place", lambda: kernel_cache.Place(tmp_path, ""))
+    monkeypatch.setattr(cache, "place", lambda: cache.Place(tmp_path, ""))
     assert progress._wait_for_others("step", perf_counter())
     assert capsys.readouterr().err == ""
 
@@ -100,7 +100,7 @@ def test_where_nothing_can_be_kept_is_told_and_kernels_are_compiled_in_this_proc
     monkeypatch: pytest.MonkeyPatch, capsys: Capture
 ) -> None:
     """What other processes compile could not be loaded here."""
-    monkeypatch.setattr(kernel_cache, "place", lambda: kernel_cache.Place(None, "no place"))
+    monkeypatch.setattr(cache, "place", lambda: cache.Place(None, "no place"))
     monkeypatch.setattr(progress, "_missing", lambda on_demand: ["check_trajectory"])
     progress.prepare_kernels()
     lines = capsys.readouterr().err.splitlines()

@@ -7,7 +7,6 @@ from ipaddress import IPv4Address, IPv4Interface
 
 import pytest
 
-from safety_island.build.targets import NAMES
 from safety_island.can.mode import TARGET_OUTPUT, OutputMode
 from safety_island.can.spec import BusSpec
 from safety_island.cli import run
@@ -17,6 +16,7 @@ from safety_island.cli.run_settings import HOSTED, RunSettings, run_settings
 from safety_island.dds.config import DdsConfig
 from safety_island.errors import ConfigurationError
 from safety_island.platform import LogConfig, LogLevel
+from safety_island.targets.kconfig.targets import NAMES
 
 
 def settings(*words: str) -> RunSettings:

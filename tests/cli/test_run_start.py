@@ -12,7 +12,6 @@ from pathlib import Path
 
 import pytest
 
-from safety_island.build.configuration import InterfaceConfiguration
 from safety_island.cli.main import main
 from safety_island.cli.run_settings import RunSettings
 from safety_island.cli.run_start import bring_up, thread_stacks
@@ -20,6 +19,7 @@ from safety_island.dds.config import DdsConfig
 from safety_island.platform import LogConfig, load
 from safety_island.platform.sim import SimPlatform
 from safety_island.platform.sim import make as make_sim
+from safety_island.targets.kconfig.configuration import InterfaceConfiguration
 from tests.cli.test_run_settings import settings
 from tests.platform.posix.test_sntp import CHRONYD, chrony, reply, server
 
@@ -78,7 +78,7 @@ def test_a_mistyped_interface_is_told_at_once_and_waited_for_up_to_the_limit(
         *_, error = process.stderr
     for line in (waiting, error):
         assert "interface 'lo0'" in line and "this machine has " in line
-        assert "did you mean lo?" in line
+        assert "did you mean 'lo'?" in line
     assert error.startswith("island: error: interface 'lo0' has no IPv4 address after 1 s")
     assert process.returncode == 1
 

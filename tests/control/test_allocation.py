@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from safety_island.control.follower import TrajectoryFollower
-from safety_island.control.kernel import JIT
 from safety_island.control.status import Mode, Refusal
+from safety_island.kernel.kernel import JIT
 from safety_island.params import from_mapping
 from tests.golden.harness import recorded
 

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from safety_island.control.cholesky import factorize
-from safety_island.control.kernel import entry
 from safety_island.control.qp_alone import solve_problem_without_limits
 from safety_island.control.qp_records import QP
 from safety_island.control.status import MpcStatus
+from safety_island.kernel.kernel import entry
 from tests.control.qp_problems import RECORDED, random_hessian, recorded
 
 

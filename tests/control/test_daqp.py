@@ -8,11 +8,11 @@ import pytest
 
 from safety_island.control.cholesky import factorize
 from safety_island.control.daqp import solve_dual
-from safety_island.control.kernel import entry
 from safety_island.control.limits import MAX_HORIZON
 from safety_island.control.qp_records import QP
 from safety_island.control.qp_working_set import append, remove
 from safety_island.control.status import MpcStatus
+from safety_island.kernel.kernel import entry
 from tests.control.qp_problems import random_problem, recorded, smooth_hessian
 
 

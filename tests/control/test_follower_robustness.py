@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from safety_island.control.follower import TrajectoryFollower
-from safety_island.control.kernel import JIT
 from safety_island.control.limits import MAX_HISTORY
 from safety_island.control.status import Refusal
+from safety_island.kernel.kernel import JIT
 from tests.control.follower_rig import driving, finite, memory
 from tests.control.hostile import Offer, cases
 from tests.control.lateral_rig import PERIOD, START, line

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import pytest
 
-from safety_island.control.kernel import JIT
+from safety_island.kernel.kernel import JIT
 from tests.control.test_longitudinal_plain_python import HERE, run_plain
 
 FILES = (

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from safety_island.control.kernel import JIT
+from safety_island.kernel.kernel import JIT
 
 HERE = Path(__file__).parent
 PARITY = HERE.parent / "golden" / "test_longitudinal_parity.py"

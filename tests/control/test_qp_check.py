@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from safety_island.control.kernel import entry
 from safety_island.control.qp import MAX_ITERATIONS, check_unconstrained
 from safety_island.control.qp_alone import (
     check_problem,
@@ -16,6 +15,7 @@ from safety_island.control.qp_alone import (
 )
 from safety_island.control.qp_records import QP
 from safety_island.control.status import MpcStatus
+from safety_island.kernel.kernel import entry
 from tests.control.qp_problems import problem, random_problem, recorded, smooth_hessian
 
 SOLVER_MEMORY = [name for name in QP.names or () if name.startswith("qp_")]

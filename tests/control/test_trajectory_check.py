@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from safety_island.control.follower import TrajectoryFollower
-from safety_island.control.limits import MAX_POINTS, MAX_REFERENCE
+from safety_island.control.limits import EXTENSION_POINTS, MAX_POINTS, MAX_REFERENCE
 from safety_island.control.records import Records
 from safety_island.control.status import Refusal
 from tests.control.lateral_rig import line, make_points
@@ -112,7 +112,7 @@ def test_an_orientation_that_is_nearly_a_unit_becomes_one(gate: TrajectoryFollow
 def test_a_path_longer_than_the_reference_can_hold(step: float) -> None:
     """Its 2-D length counts, whatever the number of points; height does not."""
     gate = TrajectoryFollower(firmware(traj_resample_dist=step))
-    room = (MAX_REFERENCE - 256) * step
+    room = (MAX_REFERENCE - EXTENSION_POINTS) * step
     for angle in (0.0, 0.7, 2.5):
         for share, wanted in ((0.999999, Refusal.ACCEPTED), (1.000001, Refusal.TOO_LONG)):
             along: Any = np.linspace(0.0, room * share, 30)

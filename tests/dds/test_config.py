@@ -162,7 +162,7 @@ def test_ports_of_every_participant_index_fit_into_16_bits() -> None:
         ({"receive_buffer": 1}, "receive_buffer is 1, expected 4096 to"),
         ({"multicast": "sdpd"}, "multicast is 'sdpd', expected one of spdp, off, full"),
         ({"loopback_only": True, "interface": "eth0"}, "contradict each other"),
-        ({"interfase": "lo"}, "unknown DDS setting 'interfase'; did you mean interface?"),
+        ({"interfase": "lo"}, "unknown DDS setting 'interfase'; did you mean 'interface'?"),
         ({"xyz": 1}, "unknown DDS setting 'xyz'; known are interface, loopback_only"),
     ],
 )
@@ -197,7 +197,7 @@ def test_a_wrong_interface_is_told_with_those_that_exist(
     monkeypatch.setattr(network, "interfaces", lambda: ["lo", "tap1"])
     said = refusal(domain_id, DdsConfig(interface="tap0"))
     assert said.startswith("network interface 'tap0' does not exist; this machine has lo, tap1")
-    assert "did you mean tap1?" in said
+    assert "did you mean 'tap1'?" in said
 
 
 def test_an_interface_that_is_down_is_told(domain_id: int, monkeypatch: pytest.MonkeyPatch) -> None:

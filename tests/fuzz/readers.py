@@ -17,10 +17,6 @@ import numpy as np
 
 from safety_island.bridge.config_file import read_bridge_file
 from safety_island.bridge.routes import plan_routes
-from safety_island.build.configuration import symbols_of
-from safety_island.build.kconfig import resolve
-from safety_island.build.kconfig_places import Places
-from safety_island.build.kconfig_symbols import load_kconfig
 from safety_island.can.dbc import dbc_text
 from safety_island.cli.main import main
 from safety_island.dds import domain
@@ -29,6 +25,10 @@ from safety_island.errors import IslandError
 from safety_island.messages.idl import parse_idl
 from safety_island.params.sets import FILES, sources_of
 from safety_island.sim.own_path import read_course
+from safety_island.targets.kconfig.configuration import symbols_of
+from safety_island.targets.kconfig.places import Places
+from safety_island.targets.kconfig.resolve import resolve
+from safety_island.targets.kconfig.symbols import load_kconfig
 from tests.can.rig import triple
 from tests.fuzz.mutations import Change, mutated, mutated_member
 from tests.replay.runs import arrays_of

@@ -21,6 +21,7 @@ COMMANDS = (
     ("params", "check"),
     ("run", "--platform", "sim", "--duration", "0.01", "--params"),
     ("run", "--domain"),
+    ("run", "--duration", "0.01", "-D", "NET_DHCPV4_INITIAL_DELAY_MAX=0", "--interface"),
     ("bridge", "--duration", "0.1"),
     ("replay",),
 )

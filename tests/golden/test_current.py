@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from safety_island.control.kernel import JIT
 from safety_island.control.release import RELEASES
+from safety_island.kernel.kernel import JIT
 from safety_island.replay.compare import judge
 from safety_island.replay.feed import replay
 from safety_island.replay.recording import Recording, find, load

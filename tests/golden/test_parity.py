@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from safety_island.control.kernel import JIT
+from safety_island.kernel.kernel import JIT
 from safety_island.replay.check import Table
 from safety_island.replay.compare import judge
 from safety_island.replay.feed import Replay

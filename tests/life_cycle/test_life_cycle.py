@@ -99,3 +99,10 @@ class TestSilence:
             State.SILENT: False,
             State.READY: True,
         }
+
+
+def test_an_island_may_begin_in_the_silence_of_the_one_before() -> None:
+    island = Island()
+    island.life_cycle.latch(Reason.PARTITION)
+    assert not island.life_cycle.is_armed and not island.life_cycle.controls
+    assert island.tick() == silent(Reason.LATCHED, Reason.PARTITION)

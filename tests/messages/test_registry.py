@@ -114,7 +114,7 @@ def test_quaternion_defaults() -> None:
 
 
 def test_an_unknown_type_is_told_with_the_nearest_name() -> None:
-    with pytest.raises(UnknownTypeError, match="did you mean nav_msgs/msg/Odometry"):
+    with pytest.raises(UnknownTypeError, match="did you mean 'nav_msgs/msg/Odometry'"):
         registry.lookup("nav_msgs/msg/Odometrie")
     with pytest.raises(UnknownTypeError, match="not of the form package/msg/Name"):
         registry.dds_type_name("Odometry")

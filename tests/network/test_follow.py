@@ -4,14 +4,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 
+from safety_island.dds import topics
 from tests.interop.namespace import Namespace, Running
 from tests.network.conftest import Machine
 
 DOMAIN = "2"
 VEHICLE, OTHER, MOVED = "192.168.77.2", "192.168.77.3", "192.168.77.9"
+
+
+def is_first_line(line: str) -> bool:
+    """Whether a process has just started: the first of its JSON lines has the version."""
+    return '"version"' in line
 
 
 def receiver_on(machine: Namespace) -> Running:
@@ -26,6 +33,12 @@ def publish(machine: Namespace, angle: str) -> None:
 
 def ends_with(text: str) -> Callable[[str], bool]:
     return lambda line: line.endswith(text)
+
+
+def move(vehicle: Namespace) -> None:
+    """Give it another address, as a DHCP server does that has forgotten the first."""
+    vehicle.run("ip", "address", "del", f"{VEHICLE}/24", "dev", "eth0")
+    vehicle.run("ip", "address", "add", f"{MOVED}/24", "dev", "eth0")
 
 
 def test_row_96_an_interface_that_is_made_anew_is_used_again(machine: Machine) -> None:
@@ -67,12 +80,41 @@ def test_row_96_an_address_that_goes_and_comes_back_is_told_and_one_that_changed
     vehicle.run("ip", "address", "del", f"{VEHICLE}/24", "dev", "eth0")
     assert receiver.expect(ends_with(f"'eth0' has lost its address {VEHICLE}; waiting for it"))
     vehicle.run("ip", "address", "add", f"{MOVED}/24", "dev", "eth0")
-    assert receiver.expect(
-        ends_with(
-            f"has the address {MOVED} in place of {VEHICLE}, which DDS cannot follow; restart"
-        )
-    )
+    moved = f"has the address {MOVED} in place of {VEHICLE}: its domain must be joined anew"
+    assert receiver.expect(ends_with(moved))
     vehicle.run("ip", "address", "add", f"{VEHICLE}/24", "dev", "eth0")
     assert receiver.expect(ends_with("'eth0' is back and in use again"))
     publish(other, "0.3")
     assert receiver.expect(ends_with("0.3"))
+
+
+def test_row_96_the_island_joins_its_domain_anew_with_another_address(machine: Machine) -> None:
+    vehicle, other = machine(), machine()
+    vehicle.link("eth0", VEHICLE, other, OTHER)
+    network = ("--interface", "eth0", "--json")
+    island = vehicle.island("safety_island", "run", *network, "--realtime", "off")
+    island.expect(is_first_line)
+    move(vehicle)
+    island.expect(is_first_line)
+    status = other.island("safety_island", "status", "--once", *network, "--timeout", "30")
+    assert status.expect(lambda line: '"state": "INIT"' in line)
+
+
+def test_row_96_the_bridge_joins_its_domains_anew_with_another_address(
+    machine: Machine, tmp_path: Path
+) -> None:
+    vehicle, other = machine(), machine()
+    vehicle.link("eth0", VEHICLE, other, OTHER)
+    (tmp_path / "bridge.yaml").write_text(
+        "{name: bridge, from_domain: 1, to_domain: 2, topics:"
+        f" {{{topics.STEERING.name}: {{type: {topics.STEERING.type_name}}}}}}}\n"
+    )
+    file = str(tmp_path / "bridge.yaml")
+    words = ("--interface", "eth0", "--json", "--realtime", "off")
+    bridge = vehicle.island("safety_island", "bridge", file, *words)
+    bridge.expect(is_first_line)
+    move(vehicle)
+    bridge.expect(is_first_line)
+    receiver = receiver_on(other)
+    other.island("tests.network.peer", "publish", "1", "eth0", "0.5")
+    assert receiver.expect(ends_with("0.5"))

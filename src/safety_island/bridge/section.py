@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
-from difflib import get_close_matches
 from pathlib import Path
 from typing import NoReturn
 
@@ -13,6 +12,7 @@ import yaml
 
 from safety_island.errors import ConfigurationError
 from safety_island.text_file import UnreadableError, read_text
+from safety_island.words import did_you_mean
 
 _SWITCH = {
     **dict.fromkeys(("true", "yes", "on", "y"), True),
@@ -56,9 +56,8 @@ class Section:
         for name, key, _ in self._pairs:
             where = Where(self.path, key)
             if name not in allowed:
-                near = get_close_matches(name, allowed, n=1)
-                hint = f"did you mean '{near[0]}'?" if near else f"known: {', '.join(allowed)}"
-                where.refuse(f"unknown key '{name}' in {self.title}; {hint}")
+                hint = did_you_mean(name, allowed) or f"; known: {', '.join(allowed)}"
+                where.refuse(f"unknown key '{name}' in {self.title}{hint}")
             if name in seen:
                 where.refuse(f"key '{name}' stands twice in {self.title}, first at {seen[name]}")
             seen[name] = where
@@ -105,8 +104,7 @@ class Section:
         """The value as one of several words."""
         value = self.text(key)
         if value is not None and value not in choices:
-            near = get_close_matches(value, choices, n=1)
-            hint = f"; did you mean '{near[0]}'?" if near else ""
+            hint = did_you_mean(value, choices)
             self._refuse_value(key, f"{' or '.join(choices)}{hint}")
         return value
 

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import importlib
-from difflib import get_close_matches
 from typing import Protocol, cast
 
 from safety_island.can.bus import BusDevice, BusLink, MonotonicNs
@@ -12,6 +11,7 @@ from safety_island.can.link import DirectLink
 from safety_island.can.spec import Backend, BusSpec
 from safety_island.can.thread_link import ThreadLink
 from safety_island.errors import ConfigurationError
+from safety_island.words import did_you_mean
 
 _PYTHON_CAN = "safety_island.can.python_can"
 
@@ -63,8 +63,7 @@ def find_backend(name: str) -> Backend:
     if name in VALID_INTERFACES:
         return Backend(name, _PYTHON_CAN, True, f"{name}:CHANNEL", "Through python-can.")
     names = sorted({*VALID_INTERFACES, *(backend.name for backend in BACKENDS)})
-    near = get_close_matches(name, names, n=1)
-    hint = f"; did you mean '{near[0]}'?" if near else ""
+    hint = did_you_mean(name, names)
     raise ConfigurationError(
         f"unknown CAN backend '{name}', expected one of {', '.join(names)}{hint}"
     )

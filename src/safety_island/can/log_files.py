@@ -42,6 +42,8 @@ LONGEST_LINE = 1 << 16
 class LogError(IslandError):
     """A log that cannot be read."""
 
+    exit_code = 2  # as for a recording: 1 is what a log that was read has shown
+
 
 class LogKind(StrEnum):
     """The format of a log; the value is python-can's reader, or who writes it."""

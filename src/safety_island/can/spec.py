@@ -5,10 +5,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from difflib import get_close_matches
 from typing import NamedTuple
 
 from safety_island.errors import ConfigurationError
+from safety_island.words import did_you_mean
 
 Option = int | float | bool | str
 
@@ -62,8 +62,7 @@ class BusSpec:
         names = sorted(known)
         for key in self.options:
             if key not in names:
-                near = get_close_matches(key, names, n=1)
-                hint = f"; did you mean '{near[0]}'?" if near else ""
+                hint = did_you_mean(key, names)
                 what = f"it knows {', '.join(names)}" if names else "it has none"
                 raise ConfigurationError(
                     f"--can {self}: backend '{self.backend}' has no option '{key}', {what}{hint}"

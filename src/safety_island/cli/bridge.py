@@ -93,6 +93,7 @@ def execute(arguments: argparse.Namespace) -> int:
         from safety_island.bridge import BridgeOptions, run
         from safety_island.bridge.link import WaitFor
         from safety_island.cli.bridge_service import BridgeService
+        from safety_island.cli.start_again import start_again
         from safety_island.platform import load
 
         chosen = BridgeOptions(
@@ -111,4 +112,7 @@ def execute(arguments: argparse.Namespace) -> int:
         report = JsonLines(tell_lost).write if arguments.json else None
         with load("posix").on_stop(stop.set):
             start.disarm()
-            return run(arguments.config, chosen, stop, report, tell)
+            code = run(arguments.config, chosen, stop, report, tell)
+        if stop.must_rejoin:
+            start_again()
+        return code

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from safety_island.cli.start_again import must_rejoin
 from safety_island.cli.stopping import StopFlag
 from safety_island.cli.tell import tell
 from safety_island.platform.posix.real_time import BRIDGE, take_real_time
@@ -21,6 +22,8 @@ class BridgeService(StopFlag):
         self._realtime, self._cpu = realtime, cpu
         self._manager = ServiceManager()
         self._is_ready = False
+        self.must_rejoin = False
+        """Whether it ends because a domain must be joined anew."""
 
     def is_set(self) -> bool:
         """Whether to end."""
@@ -30,9 +33,9 @@ class BridgeService(StopFlag):
             if result is not None:
                 tell(str(result))
             self._manager.ready()
-        is_set = super().is_set()
-        if is_set:
+        if super().is_set():
             self._manager.stopping()
-        else:
-            self._manager.alive()
-        return is_set
+            return True
+        self.must_rejoin = must_rejoin()
+        self._manager.alive()
+        return self.must_rejoin

@@ -11,16 +11,16 @@ from pathlib import Path
 from time import monotonic
 from typing import TYPE_CHECKING
 
-from safety_island.build.built import refuse_in_built
-from safety_island.build.machines import HOSTS
-from safety_island.build.products import APPLICATION, TEST_PROGRAMS, Product
-from safety_island.build.targets import NAMES
 from safety_island.cli.configuration import add_configuration, resolved
 from safety_island.cli.parser import UsageError, teach
+from safety_island.targets.aot.machines import HOSTS
+from safety_island.targets.kconfig.targets import NAMES
+from safety_island.targets.package.built import refuse_in_built
+from safety_island.targets.package.products import APPLICATION, TEST_PROGRAMS, Product
 
 if TYPE_CHECKING:
-    from safety_island.build.kconfig_places import Places
-    from safety_island.build.pipeline import Build
+    from safety_island.targets.kconfig.places import Places
+    from safety_island.targets.package.pipeline import Build
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -84,7 +84,7 @@ def execute(arguments: argparse.Namespace) -> int:
 
 def places() -> Places:
     """Return where configurations are read and builds are made."""
-    from safety_island.build.kconfig_places import Places
+    from safety_island.targets.kconfig.places import Places
 
     return Places()
 
@@ -99,7 +99,7 @@ def _clean() -> int:
 
 
 def _build_wheel(arguments: argparse.Namespace) -> int:
-    from safety_island.build.wheel import build_wheel
+    from safety_island.targets.package.wheel import build_wheel
 
     for option in ("target", "conf", "define"):
         if getattr(arguments, option):
@@ -124,7 +124,7 @@ def _steps() -> Callable[[str], None]:
 
 
 def _build(arguments: argparse.Namespace, product: Product) -> int:
-    from safety_island.build.pipeline import Build
+    from safety_island.targets.package.pipeline import Build
 
     say = _steps()
     build = Build(resolved(arguments), product, places(), say)

@@ -8,11 +8,11 @@ import dataclasses
 import json
 from collections.abc import Iterable, Iterator
 
-from safety_island.build.built import refuse_in_built
-from safety_island.build.kconfig import Resolved, Setting, resolve
 from safety_island.cli.configuration import add_configuration, add_target, resolved
 from safety_island.cli.options import add_json
 from safety_island.cli.parser import teach
+from safety_island.targets.kconfig.resolve import Resolved, Setting, resolve
+from safety_island.targets.package.built import refuse_in_built
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

@@ -8,12 +8,12 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from safety_island.build.built import built, refuse_in_built
-from safety_island.build.configuration import RunConfiguration
-from safety_island.build.targets import NAMES
+from safety_island.targets.kconfig.configuration import RunConfiguration
+from safety_island.targets.kconfig.targets import NAMES
+from safety_island.targets.package.built import built, refuse_in_built
 
 if TYPE_CHECKING:
-    from safety_island.build.kconfig import Resolved
+    from safety_island.targets.kconfig.resolve import Resolved
 
 
 def add_target(parser: argparse.ArgumentParser, default: str | None = None) -> None:
@@ -53,7 +53,7 @@ def add_configuration(parser: argparse.ArgumentParser) -> None:
 
 def resolved(arguments: argparse.Namespace) -> Resolved:
     """Return the configuration that the options choose; print which value replaced which."""
-    from safety_island.build.kconfig import resolve
+    from safety_island.targets.kconfig.resolve import resolve
 
     found = resolve(arguments.target, arguments.conf, arguments.define)
     for note in found.notes:

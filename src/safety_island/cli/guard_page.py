@@ -12,6 +12,7 @@ from safety_island.guard import EXPLANATIONS, GuardParams, Limit
 from safety_island.guard.limit import REFUSALS
 from safety_island.parameter import key_of
 from safety_island.params import load_set
+from safety_island.words import words_of
 
 PAGE = "docs/guard.md"
 
@@ -93,7 +94,7 @@ def render() -> str:
 
 def name_of(limit: Limit) -> str:
     """Return the name of a check as a reader writes it."""
-    return str(limit.name).lower().replace("_", " ")
+    return words_of(limit)
 
 
 def _limits() -> str:

@@ -13,10 +13,11 @@ from safety_island.cli import streams
 from safety_island.cli.exit_codes import EXIT_CODES
 from safety_island.cli.foreign import printable
 from safety_island.cli.memory_limit import check_memory_limit
-from safety_island.cli.parser import Parser, UsageError, nearest
+from safety_island.cli.parser import OPTIONS_LIKE, Parser, UsageError
 from safety_island.cli.table import COMMANDS, Command, find, load
 from safety_island.cli.tell import tell
 from safety_island.errors import IslandError
+from safety_island.words import did_you_mean
 
 DEBUG = "SAFETY_ISLAND_DEBUG"
 """Environment variable that lets an unforeseen exception show where it comes from."""
@@ -56,7 +57,7 @@ def choose(name: str) -> Command:
     command = find(name)
     if command is None:
         kind = "option" if name.startswith("-") else "command"
-        hint = nearest(name, [command.name for command in COMMANDS])
+        hint = did_you_mean(name, [command.name for command in COMMANDS], OPTIONS_LIKE)
         raise UsageError(f"unknown {kind} '{name}'{hint} (see 'island --help')")
     return command
 

@@ -70,6 +70,6 @@ def check_memory_limit(command: str, need: Need | None) -> None:
 
 
 def _is_compiled() -> bool:
-    from safety_island.control import aot
+    from safety_island.kernel import library
 
-    return aot.find_library() is not None
+    return library.find_library() is not None

@@ -6,9 +6,9 @@ from __future__ import annotations
 import argparse
 import sys
 
-from safety_island.build.built import refuse_in_built
 from safety_island.cli.configuration import add_target
 from safety_island.cli.parser import UsageError, teach
+from safety_island.targets.package.built import refuse_in_built
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -29,9 +29,9 @@ build/TARGET/menuconfig.conf, and every later run and build of the target takes 
 def execute(arguments: argparse.Namespace) -> int:
     """Open the menu."""
     refuse_in_built("island menuconfig")
-    from safety_island.build.kconfig_menu import edit
-    from safety_island.build.kconfig_places import Places
-    from safety_island.build.targets import find_target
+    from safety_island.targets.kconfig.menu import edit
+    from safety_island.targets.kconfig.places import Places
+    from safety_island.targets.kconfig.targets import find_target
 
     target = find_target(arguments.target)
     if not (sys.stdin.isatty() and sys.stdout.isatty()):

@@ -13,6 +13,8 @@ if TYPE_CHECKING:
 
 MAX_DOMAIN = 232
 """The highest DDS domain id whose UDP ports exist."""
+MAX_INTERFACE = 15
+"""Bytes of the longest name of an interface (Linux: IFNAMSIZ without its final zero)."""
 
 
 class PeersAndTags(TypedDict):
@@ -30,6 +32,18 @@ def domain_id(text: str) -> int:
             f"'{text}' is not a DDS domain id: a whole number from 0 to {MAX_DOMAIN}"
         )
     return int(text)
+
+
+def interface(text: str) -> str:
+    """Read the name of a network interface; the kernel gives none another form than this."""
+    is_name = 0 < len(text.encode(errors="replace")) <= MAX_INTERFACE
+    wrong = any(c in "/:" or c.isspace() or not c.isprintable() for c in text)
+    if not is_name or wrong or text in (".", ".."):
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is not a name of an interface: 1 to {MAX_INTERFACE} characters"
+            " without spaces, '/' and ':', for example eth0 (ip link shows those of this machine)"
+        )
+    return text
 
 
 def period_s(text: str) -> float:
@@ -98,6 +112,7 @@ def add_interface(parser: argparse.ArgumentParser) -> None:
     """Add ``--interface``."""
     parser.add_argument(
         "--interface",
+        type=interface,
         default="lo",
         metavar="NAME",
         help="network interface, for example eth0 or tap0 (default: lo, this machine only; "

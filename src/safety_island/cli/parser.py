@@ -4,11 +4,13 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterable
-from difflib import get_close_matches
 from typing import Any, NoReturn
 
 from safety_island.errors import IslandError
+from safety_island.words import did_you_mean
+
+OPTIONS_LIKE = 0.5
+"""How alike a word on the command line must be to what there is: they are short."""
 
 
 class UsageError(IslandError):
@@ -32,7 +34,7 @@ class Parser(argparse.ArgumentParser):
         """Parse all arguments; an unknown option is answered with the nearest known one."""
         known, unknown = self.parse_known_args(arguments)
         if unknown:
-            hint = nearest(unknown[0].split("=")[0], self._options())
+            hint = did_you_mean(unknown[0].split("=")[0], self._options(), OPTIONS_LIKE)
             self.error(f"unknown argument '{unknown[0]}'{hint}")
         return known
 
@@ -40,12 +42,6 @@ class Parser(argparse.ArgumentParser):
         below = (action.choices for action in self._actions if action.nargs == argparse.PARSER)
         parsers = [self, *(parser for choices in below for parser in dict(choices or {}).values())]
         return [option for parser in parsers for option in parser._option_string_actions]
-
-
-def nearest(word: str, choices: Iterable[str]) -> str:
-    """Return ``; did you mean 'x'?`` for the choice most like a word, or nothing."""
-    match = get_close_matches(word, list(choices), n=1, cutoff=0.5)
-    return f"; did you mean '{match[0]}'?" if match else ""
 
 
 def teach(parser: argparse.ArgumentParser, purpose: str, *examples: tuple[str, str]) -> None:

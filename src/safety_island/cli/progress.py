@@ -29,7 +29,7 @@ def prepare_kernels(on_demand: bool = False) -> None:
     some uses need.
     """
     missing = _missing(on_demand)
-    from safety_island.control import kernel
+    from safety_island.kernel import kernel
 
     if note := kernel.cache_note():
         _say(note)
@@ -45,16 +45,15 @@ def _missing(on_demand: bool) -> list[str]:
     """Name the island's kernels of which no compiled code is on disk."""
     import safety_island.control.follower
     import safety_island.control.qp_alone  # noqa: F401  (these two define every entry)
-    from safety_island.control import kernel
+    from safety_island.kernel import kernel
 
     wanted = kernel.ENTRIES + (kernel.ON_DEMAND if on_demand else [])
-    own = [item for item in wanted if item.is_own()]
-    return [item.name for item in own if kernel.JIT and not item.is_on_disk()]
+    return [item.name for item in wanted if kernel.JIT and not item.is_on_disk()]
 
 
 def _compile(names: list[str], show: Report) -> None:
     """Compile each kernel, in processes of their own when the code is kept for this one to load."""
-    from safety_island.control import kernel
+    from safety_island.kernel import kernel
 
     if not kernel.is_kept():
         for index, name in enumerate(names):
@@ -82,7 +81,7 @@ def _compile_kept(name: str, end: float) -> str:
 def _compile_one(name: str) -> str:
     import safety_island.control.follower
     import safety_island.control.qp_alone  # noqa: F401
-    from safety_island.control import kernel
+    from safety_island.kernel import kernel
 
     entries = {item.name: item for item in kernel.ENTRIES + kernel.ON_DEMAND}
     entries[name].prepare()
@@ -94,14 +93,14 @@ def _wait_for_others(name: str, end: float) -> bool:
 
     What is then still missing is compiled by the process that needs it, and not kept.
     """
-    from safety_island.control import kernel_cache
+    from safety_island.kernel import cache
 
     is_told = False
     while True:
-        with kernel_cache.lock(name) as is_free:
+        with cache.lock(name) as is_free:
             if is_free:
                 return True
-        holder = kernel_cache.lock_holder(name)
+        holder = cache.lock_holder(name)
         who = f"process {holder}" if holder else "another process"
         if perf_counter() > end:
             _say(f"{who} still holds the lock of kernel {name}: compiling it for this run alone")

@@ -82,6 +82,7 @@ def _add_network(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--interface",
+        type=options.interface,
         metavar="NAME",
         help="network interface, for example eth0 or tap0 (default: DDS_NETWORK_INTERFACE of the "
         "configuration; posix: lo, this machine only; CYCLONEDDS_URI, when set, configures DDS "
@@ -119,5 +120,7 @@ def execute(arguments: argparse.Namespace) -> int:
     with StopAtOnce() as start:
         from safety_island.cli.run_island import run
 
-        run(arguments, start)
+        rejoin = run(arguments, start)
+    if rejoin.is_due:
+        rejoin.start_again()
     return 0

@@ -13,6 +13,7 @@ from safety_island.cli.parameters import read_parameters
 from safety_island.cli.process import seconds_since_start
 from safety_island.cli.progress import prepare_kernels
 from safety_island.cli.run_can import CanSide
+from safety_island.cli.run_rejoin import IslandRejoin
 from safety_island.cli.run_report import RunReport
 from safety_island.cli.run_service import service
 from safety_island.cli.run_settings import RunSettings, run_settings
@@ -41,18 +42,21 @@ class Run(NamedTuple):
     """What the vehicle of virtual time drives."""
 
 
-def run(arguments: argparse.Namespace, start: StopAtOnce) -> None:
-    """Start in order and run until told to stop. Raises IslandError when the start fails."""
+def run(arguments: argparse.Namespace, start: StopAtOnce) -> IslandRejoin:
+    """Start in order and run until told to stop, or until the domain must be joined anew.
+
+    Raises IslandError when the start fails.
+    """
     settings = run_settings(arguments, chosen(arguments))
     course = course_of(arguments) if arguments.platform == "sim" else None
     parameters = read_parameters(arguments.params, arguments.period).parameters
     with thread_stacks(settings.thread_stack_size), ExitStack() as stack:
         platform = load(arguments.platform, settings.log)
         stack.callback(platform.logger.close)
-        _start(Run(platform, settings, parameters, arguments, course), start, stack)
+        return _start(Run(platform, settings, parameters, arguments, course), start, stack)
 
 
-def _start(run: Run, start: StopAtOnce, stack: ExitStack) -> None:
+def _start(run: Run, start: StopAtOnce, stack: ExitStack) -> IslandRejoin:
     platform, settings, parameters = run.platform, run.settings, run.parameters
     arguments = run.arguments
     for note in notes(parameters):
@@ -81,7 +85,9 @@ def _start(run: Run, start: StopAtOnce, stack: ExitStack) -> None:
         from safety_island.node.debug import DebugTopics
 
         node.observers.append(DebugTopics(node))
-    _drive(run, node, follower.trace, can, start)
+    rejoin = IslandRejoin(node)
+    _drive(run, node, follower.trace, can, start, rejoin)
+    return rejoin
 
 
 def where(domain_id: int, dds: DdsConfig) -> str:
@@ -106,7 +112,14 @@ def _json_lines(platform: Platform, node: ControllerNode) -> JsonLines:
     return JsonLines(lambda reason: platform.logger.warning(LOST, reason))
 
 
-def _drive(run: Run, node: ControllerNode, trace: Records, can: CanSide, start: StopAtOnce) -> None:
+def _drive(
+    run: Run,
+    node: ControllerNode,
+    trace: Records,
+    can: CanSide,
+    start: StopAtOnce,
+    rejoin: IslandRejoin,
+) -> None:
     """Tick until told to stop, then close the node and tell how it went."""
     platform, settings, parameters, arguments, course = run
     lines = _json_lines(platform, node) if arguments.json else None
@@ -116,7 +129,9 @@ def _drive(run: Run, node: ControllerNode, trace: Records, can: CanSide, start: 
     vehicle = None
     if course is not None:
         vehicle = VirtualVehicle(platform, node.transport, node.stop, course)
-    with node, platform.on_stop(node.stop), service(platform, arguments, node):
+    else:
+        node.observers.append(rejoin)
+    with node, platform.on_stop(node.stop), service(platform, arguments, node, rejoin):
         start.disarm()
         node.run(parameters.node.ctrl_period, arguments.duration or None)
         report.finish()

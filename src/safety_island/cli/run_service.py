@@ -7,13 +7,14 @@ import argparse
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from safety_island.cli.run_rejoin import IslandRejoin
 from safety_island.node import ControllerNode, Outcome, TickReport
 from safety_island.platform import Platform
 
 
 @contextmanager
 def service(
-    platform: Platform, arguments: argparse.Namespace, node: ControllerNode
+    platform: Platform, arguments: argparse.Namespace, node: ControllerNode, rejoin: IslandRejoin
 ) -> Iterator[None]:
     """Take real-time scheduling, tell the service manager "ready", and of each tick without fault.
 
@@ -38,5 +39,6 @@ def service(
         platform.logger.info("%s", result)
     manager.ready()
     yield
-    manager.stopping()
+    if not rejoin.is_due:  # the process goes on as another one
+        manager.stopping()
     manager.close()

@@ -11,13 +11,13 @@ import socket
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from safety_island.build.configuration import InterfaceConfiguration, RunConfiguration
 from safety_island.can.mode import TARGET_OUTPUT, OutputMode
 from safety_island.can.spec import BusSpec, parse_spec
 from safety_island.cli.options import check_realtime, peers_and_tags
 from safety_island.dds.config import URI, DdsConfig, user_xml
 from safety_island.errors import ConfigurationError
 from safety_island.platform import LogConfig, LogLevel
+from safety_island.targets.kconfig.configuration import InterfaceConfiguration, RunConfiguration
 
 HOSTED = ("freertos_posix", "posix")
 """Targets whose machine is the one that 'island run' runs on; the others name a board's devices."""

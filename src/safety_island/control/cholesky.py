@@ -9,8 +9,8 @@ rounded up with a row of the identity.
 
 import math
 
-from safety_island.control.kernel import kernel
 from safety_island.control.status import MpcStatus
+from safety_island.kernel.kernel import kernel
 
 NOT_POSITIVE_DEFINITE = int(MpcStatus.NOT_POSITIVE_DEFINITE)
 SOLVED = int(MpcStatus.SOLVED)

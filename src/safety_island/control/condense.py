@@ -8,8 +8,8 @@ rounding.
 """
 
 from safety_island.control import condense_dynamic, condense_kinematic
-from safety_island.control.kernel import kernel
 from safety_island.control.vehicle_model import is_kinematic
+from safety_island.kernel.kernel import kernel
 
 _STATES = 4
 

@@ -4,7 +4,7 @@
 The yaw error is state 2. ``condense`` says what is computed here.
 """
 
-from safety_island.control.kernel import kernel
+from safety_island.kernel.kernel import kernel
 
 _STATES = 4
 

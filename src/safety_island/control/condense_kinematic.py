@@ -6,7 +6,7 @@ yaw error is state 1. What is left out would only add zeros, so the numbers are 
 ``condense_dynamic``, in a third of the operations. ``condense`` says what is computed here.
 """
 
-from safety_island.control.kernel import kernel
+from safety_island.kernel.kernel import kernel
 
 
 @kernel

@@ -4,8 +4,8 @@
 import math
 
 from safety_island.control.geometry import time_since
-from safety_island.control.kernel import kernel
 from safety_island.control.limits import MAX_HISTORY, MAX_SHAPE_HISTORY
+from safety_island.kernel.kernel import kernel
 
 _HISTORY_SECONDS = 1.0
 

@@ -11,12 +11,12 @@ lower one, free where both bounds are equal.
 
 import math
 
-from safety_island.control.kernel import kernel
 from safety_island.control.limits import MAX_HORIZON
 from safety_island.control.qp_ldl import back_substitute, solve_targets
 from safety_island.control.qp_primal import primal
 from safety_island.control.qp_working_set import append, guess, remove
 from safety_island.control.status import MpcStatus
+from safety_island.kernel.kernel import kernel
 
 SOLVED = int(MpcStatus.SOLVED)
 INFEASIBLE = int(MpcStatus.INFEASIBLE)

@@ -3,7 +3,7 @@
 
 import math
 
-from safety_island.control.kernel import kernel
+from safety_island.kernel.kernel import kernel
 
 
 @kernel

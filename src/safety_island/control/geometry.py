@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 
-from safety_island.control.kernel import kernel
+from safety_island.kernel.kernel import kernel
 
 
 @kernel

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Model and weights of every step of the MPC's horizon."""
 
-from safety_island.control.kernel import kernel
 from safety_island.control.vehicle_model import discretize, feed_forward
+from safety_island.kernel.kernel import kernel
 
 
 @kernel

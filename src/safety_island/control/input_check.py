@@ -8,11 +8,11 @@ is checked here and, where its points have flaws that its path has not, cleaned 
 
 import math
 
-from safety_island.control.kernel import entry, kernel
 from safety_island.control.limits import EXTENSION_POINTS, MAX_POINTS, MAX_REFERENCE
 from safety_island.control.points import advance, time_of
 from safety_island.control.records import PARAMS, POINT
 from safety_island.control.status import ReferenceMode, Refusal
+from safety_island.kernel.kernel import entry, kernel
 
 MAX_POSITION = 1e7
 """[m]; a UTM northing stays below it."""

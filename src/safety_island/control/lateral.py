@@ -11,7 +11,6 @@ from safety_island.control.convergence import (
     remember_end,
 )
 from safety_island.control.geometry import clip, yaw_of
-from safety_island.control.kernel import entry, kernel
 from safety_island.control.lateral_state import LATERAL_STATE
 from safety_island.control.mpc import finish_mpc, prepare_mpc
 from safety_island.control.points import distance_2d, nearest_index
@@ -22,6 +21,7 @@ from safety_island.control.reference_temporal import accept_timed
 from safety_island.control.solver import solve, tell_solver
 from safety_island.control.status import Mode, MpcStatus, ReferenceMode
 from safety_island.control.steering_offset import follow_offset, update_offset
+from safety_island.kernel.kernel import entry, kernel
 
 _SOLVED = int(MpcStatus.SOLVED)
 _NO_REFERENCE = int(MpcStatus.NO_REFERENCE)

@@ -3,7 +3,6 @@
 
 import numpy as np
 
-from safety_island.control.kernel import entry, kernel
 from safety_island.control.longitudinal_command import (
     emergency_command,
     limit_output,
@@ -30,6 +29,7 @@ from safety_island.control.longitudinal_target import (
 from safety_island.control.records import COMMAND, INPUTS, PARAMS, POINT, TRACE
 from safety_island.control.slope import update_slope
 from safety_island.control.status import LongitudinalSkip, LongitudinalState, Mode, SmoothStopMode
+from safety_island.kernel.kernel import entry, kernel
 
 AUTONOMOUS = int(Mode.AUTONOMOUS)
 STOPPED = int(LongitudinalState.STOPPED)

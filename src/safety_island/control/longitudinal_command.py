@@ -6,12 +6,12 @@ import math
 import numpy as np
 
 from safety_island.control.geometry import clip, diff_limit, time_since
-from safety_island.control.kernel import kernel
 from safety_island.control.pid import low_pass, pid_step
 from safety_island.control.slope import slope_acceleration, slope_pull
 from safety_island.control.smooth_stop import smooth_stop_acc, smooth_stop_mode
 from safety_island.control.status import LongitudinalState
 from safety_island.control.trajectory_walk import stop_index
+from safety_island.kernel.kernel import kernel
 
 DRIVE = int(LongitudinalState.DRIVE)
 EMERGENCY = int(LongitudinalState.EMERGENCY)

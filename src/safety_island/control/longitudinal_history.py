@@ -6,9 +6,9 @@ import math
 import numpy as np
 
 from safety_island.control.geometry import time_since, whole_nanoseconds
-from safety_island.control.kernel import kernel
 from safety_island.control.limits import MAX_HISTORY
 from safety_island.control.status import LongitudinalState, Mode
+from safety_island.kernel.kernel import kernel
 
 AUTONOMOUS = int(Mode.AUTONOMOUS)
 DRIVE = int(LongitudinalState.DRIVE)

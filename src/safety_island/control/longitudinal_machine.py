@@ -2,11 +2,11 @@
 """The four states of the longitudinal controller: which comes next, and what a change resets."""
 
 from safety_island.control.geometry import time_since
-from safety_island.control.kernel import kernel
 from safety_island.control.pid import pid_reset
 from safety_island.control.smooth_stop import smooth_stop_start
 from safety_island.control.status import LongitudinalState
 from safety_island.control.trajectory_walk import STANDING
+from safety_island.kernel.kernel import kernel
 
 DRIVE = int(LongitudinalState.DRIVE)
 STOPPING = int(LongitudinalState.STOPPING)

@@ -6,7 +6,6 @@ import math
 import numpy as np
 
 from safety_island.control.geometry import clip, normalize_angle, whole_nanoseconds, yaw_of
-from safety_island.control.kernel import kernel
 from safety_island.control.longitudinal_history import predict_after_delay
 from safety_island.control.pid import pid_reset
 from safety_island.control.point_list import (
@@ -25,6 +24,7 @@ from safety_island.control.points import (
 )
 from safety_island.control.status import ReferenceMode
 from safety_island.control.trajectory_walk import pose_ahead, stop_distance
+from safety_island.kernel.kernel import kernel
 
 TEMPORAL = int(ReferenceMode.TEMPORAL)
 

@@ -9,7 +9,6 @@ from safety_island.control.condense import advance, condense, is_finite_problem
 from safety_island.control.filters import butterworth
 from safety_island.control.geometry import clip, normalize_angle, yaw_of
 from safety_island.control.horizon_models import build_models
-from safety_island.control.kernel import kernel
 from safety_island.control.prediction import (
     between,
     curvature_between,
@@ -33,6 +32,7 @@ from safety_island.control.status import MpcStatus, VehicleModel
 from safety_island.control.steering_predictor import predict_steering, store_command
 from safety_island.control.steering_rate_limit import fill_bounds
 from safety_island.control.vehicle_model import discretize
+from safety_island.kernel.kernel import kernel
 
 _SOLVED = int(MpcStatus.SOLVED)
 _NO_REFERENCE = int(MpcStatus.NO_REFERENCE)

@@ -2,7 +2,7 @@
 """PID of the speed error, and the first-order low pass before it."""
 
 from safety_island.control.geometry import clip
-from safety_island.control.kernel import kernel
+from safety_island.kernel.kernel import kernel
 
 
 @kernel

@@ -5,8 +5,8 @@ import math
 
 import numpy as np
 
-from safety_island.control.kernel import kernel
 from safety_island.control.points import distance_2d, offset_along
+from safety_island.kernel.kernel import kernel
 
 SAME_PLACE = 1e-8
 """Two points nearer than this [m], in x and in y, are one, as in Autoware."""

@@ -4,7 +4,7 @@
 import math
 
 from safety_island.control.geometry import normalize_angle, yaw_of
-from safety_island.control.kernel import kernel
+from safety_island.kernel.kernel import kernel
 
 
 @kernel

@@ -7,9 +7,9 @@ Times count from the first point of the ego's segment; nothing before it is ever
 import math
 
 from safety_island.control.geometry import clip
-from safety_island.control.kernel import kernel
 from safety_island.control.reference_positions import ensure
 from safety_island.control.reference_shape import curvature_at
+from safety_island.kernel.kernel import kernel
 
 _EPSILON = 2.220446049250313e-16
 _TAIL = 100.0  # seconds that the closing duplicate stands still

@@ -7,9 +7,9 @@ Fill ``H``, ``f`` and the four bounds of a record with ``QP_COLUMNS`` (see ``qp_
 
 from safety_island.control.cholesky import factorize, solve_unconstrained
 from safety_island.control.daqp import INFEASIBLE, SOLVED, VIOLATION, solve_dual
-from safety_island.control.kernel import kernel
 from safety_island.control.qp_check import check_solution, check_unconstrained
 from safety_island.control.qp_records import QP, QP_COLUMNS
+from safety_island.kernel.kernel import kernel
 
 __all__ = [
     "MAX_ITERATIONS",

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Entries that solve and check a quadratic programme outside the tick (OSQP, tests)."""
 
-from safety_island.control.kernel import entry
 from safety_island.control.qp_check import check_solution
 from safety_island.control.qp_records import QP
 from safety_island.control.solver import solve_within_limits, solve_without_limits
+from safety_island.kernel.kernel import entry
 
 
 @entry(QP, int, int, on_demand=True)

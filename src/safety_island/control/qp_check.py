@@ -15,8 +15,8 @@ reached multipliers with no more than that residual exist, whichever solver foun
 
 import math
 
-from safety_island.control.kernel import kernel
 from safety_island.control.status import MpcStatus
+from safety_island.kernel.kernel import kernel
 
 SOLVED = int(MpcStatus.SOLVED)
 SOLUTION_NOT_FINITE = int(MpcStatus.SOLUTION_NOT_FINITE)

@@ -7,7 +7,7 @@ Saunders 1974, method C1), which only ever adds and so stays stable.
 """
 
 from safety_island.control.cholesky import dot
-from safety_island.control.kernel import kernel
+from safety_island.kernel.kernel import kernel
 
 
 @kernel

@@ -2,9 +2,9 @@
 """From multipliers of the working set to u, exact to rounding at the active bounds."""
 
 from safety_island.control.cholesky import solve_upper
-from safety_island.control.kernel import kernel
 from safety_island.control.limits import MAX_HORIZON
 from safety_island.control.qp_ldl import solve_gram
+from safety_island.kernel.kernel import kernel
 
 ACTIVE_ERROR = 1e-13
 """Distance of u from an active bound that is not worth a correction [rad]."""

@@ -2,9 +2,9 @@
 """The working set: constraints that the active-set solver holds at a bound, and their rows of M."""
 
 from safety_island.control.cholesky import solve_transposed
-from safety_island.control.kernel import kernel
 from safety_island.control.limits import MAX_HORIZON
 from safety_island.control.qp_ldl import append_row, forward, remove_row
+from safety_island.kernel.kernel import kernel
 
 DEPENDENT = 1e-11
 """A row is a combination of the working set when this part of its squared length is left."""

@@ -7,7 +7,6 @@ same numbers.
 """
 
 from safety_island.control.geometry import clip, yaw_of
-from safety_island.control.kernel import kernel
 from safety_island.control.limits import MAX_REFERENCE
 from safety_island.control.points import advance, nearest_index, offset_along, segment_of
 from safety_island.control.reference_positions import close, ensure, extend, work_out
@@ -20,6 +19,7 @@ from safety_island.control.spline import (
     spline_value,
     unwrap_step,
 )
+from safety_island.kernel.kernel import kernel
 
 _NO_INFLUENCE = 1e-16
 """Share of a knot's second derivative, in that of an earlier knot, that double precision loses."""

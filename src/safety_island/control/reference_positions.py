@@ -6,9 +6,9 @@ A trajectory may be three times as long as the horizon; what lies beyond it cost
 
 import math
 
-from safety_island.control.kernel import kernel
 from safety_island.control.limits import MAX_REFERENCE
 from safety_island.control.spline import interval_from
+from safety_island.kernel.kernel import kernel
 
 _STRETCH = 64
 """Points that are worked out beyond the one that was asked for."""

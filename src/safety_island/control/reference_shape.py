@@ -7,8 +7,8 @@ Yaw and curvature read points around the one that they are asked for, which must
 import math
 
 from safety_island.control.geometry import normalize_angle
-from safety_island.control.kernel import kernel
 from safety_island.control.reference_positions import ensure
+from safety_island.kernel.kernel import kernel
 
 TOO_CLOSE = 1e-3
 """Points of the reference nearer than this [m] give no direction and no curvature."""

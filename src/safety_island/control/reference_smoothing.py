@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Moving average over the reference path (optional)."""
 
-from safety_island.control.kernel import kernel
+from safety_island.kernel.kernel import kernel
 
 
 @kernel

@@ -9,7 +9,6 @@ once for each one that is accepted.
 import math
 
 from safety_island.control.geometry import clip, normalize_angle, yaw_of
-from safety_island.control.kernel import kernel
 from safety_island.control.points import time_of
 from safety_island.control.reference_positions import extend
 from safety_island.control.reference_shape import TOO_CLOSE, menger_curvature
@@ -21,6 +20,7 @@ from safety_island.control.spline import (
     spline_value,
     unwrap_step,
 )
+from safety_island.kernel.kernel import kernel
 
 _TAIL = 100.0  # seconds that each closing duplicate stands still
 _SHORTEST = 1e-4  # s, that a step takes

@@ -4,11 +4,11 @@
 import math
 
 from safety_island.control.geometry import clip
-from safety_island.control.kernel import kernel
 from safety_island.control.pid import low_pass
 from safety_island.control.points import nearest_position, offset_along, segment_of
 from safety_island.control.status import SlopeSource
 from safety_island.control.trajectory_walk import arc_length, pitch_ahead
+from safety_island.kernel.kernel import kernel
 
 TRAJECTORY_PITCH = int(SlopeSource.TRAJECTORY_PITCH)
 TRAJECTORY_ADAPTIVE = int(SlopeSource.TRAJECTORY_ADAPTIVE)

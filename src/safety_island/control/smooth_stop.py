@@ -2,8 +2,8 @@
 """Smooth stop: how to brake over the last half metre without a jerk."""
 
 from safety_island.control.geometry import clip, time_since
-from safety_island.control.kernel import kernel
 from safety_island.control.status import SmoothStopMode
+from safety_island.kernel.kernel import kernel
 
 STRONG = int(SmoothStopMode.STRONG)
 WEAK = int(SmoothStopMode.WEAK)

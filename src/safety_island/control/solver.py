@@ -2,10 +2,10 @@
 """The choice of solver for the quadratic programme; a solution is checked before it is used."""
 
 from safety_island.control.cholesky import factorize, solve_unconstrained
-from safety_island.control.kernel import kernel
 from safety_island.control.qp import MAX_ITERATIONS, solve_constrained
 from safety_island.control.qp_check import check_solution, check_unconstrained
 from safety_island.control.status import MpcStatus, Solver
+from safety_island.kernel.kernel import kernel
 
 _SOLVED = int(MpcStatus.SOLVED)
 _UNCONSTRAINT_FAST = int(Solver.UNCONSTRAINT_FAST)

@@ -5,8 +5,8 @@ import math
 
 from safety_island.control.filters import butterworth
 from safety_island.control.geometry import clip
-from safety_island.control.kernel import kernel
 from safety_island.control.limits import MAX_OFFSET_SAMPLES
+from safety_island.kernel.kernel import kernel
 
 _ARRIVED = 1e-4
 """Distance [rad] from its target at which the filtered offset counts as there."""

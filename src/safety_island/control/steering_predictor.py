@@ -3,8 +3,8 @@
 
 import math
 
-from safety_island.control.kernel import kernel
 from safety_island.control.limits import MAX_HISTORY
+from safety_island.kernel.kernel import kernel
 
 _TOLERANCE = 1e-9  # seconds; a stamp carries whole nanoseconds
 

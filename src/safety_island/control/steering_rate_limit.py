@@ -3,7 +3,7 @@
 
 import math
 
-from safety_island.control.kernel import kernel
+from safety_island.kernel.kernel import kernel
 
 _DRY_STEERING_RATE = 100.0  # rad/s, allowed at standstill
 

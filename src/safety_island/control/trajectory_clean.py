@@ -24,11 +24,11 @@ from safety_island.control.input_check import (
     leads_both_ways,
     leans,
 )
-from safety_island.control.kernel import entry, kernel
 from safety_island.control.point_list import between, interpolate_pose, overlaps
 from safety_island.control.points import advance, distance_2d
 from safety_island.control.records import CLEANED, INPUTS, PARAMS, POINT
 from safety_island.control.status import Refusal
+from safety_island.kernel.kernel import entry, kernel
 
 REACH = 0.1
 """Distance [m] over which the path has a direction, whatever the noise of its points."""

@@ -5,9 +5,9 @@ import math
 
 import numpy as np
 
-from safety_island.control.kernel import kernel
 from safety_island.control.point_list import interpolate_pose
 from safety_island.control.points import distance_2d, distance_3d
+from safety_island.kernel.kernel import kernel
 
 STANDING = 1e-3
 """A point slower than this [m/s] is a stop point."""

@@ -8,8 +8,8 @@ matrices of four rows, the unused ones zero.
 
 import math
 
-from safety_island.control.kernel import kernel
 from safety_island.control.status import VehicleModel
+from safety_island.kernel.kernel import kernel
 
 _KINEMATICS = int(VehicleModel.KINEMATICS)
 _NO_DELAY = int(VehicleModel.KINEMATICS_NO_DELAY)

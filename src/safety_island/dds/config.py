@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, Literal
 from xml.sax.saxutils import quoteattr
@@ -20,6 +19,7 @@ from safety_island.dds.network import (
 )
 from safety_island.dds.user_xml import URI, user_xml
 from safety_island.errors import ConfigurationError
+from safety_island.words import did_you_mean
 
 MAX_DOMAIN_ID = 232
 """The highest domain id whose ports fit into 16 bits (RTPS 2.5, section 9.6.2.3)."""
@@ -90,9 +90,8 @@ class DdsConfig:
         known = [field.name for field in fields(cls)]
         for name in settings:
             if name not in known:
-                near = get_close_matches(name, known, n=1)
-                hint = f"did you mean {near[0]}?" if near else f"known are {', '.join(known)}"
-                raise ConfigurationError(f"{source}: unknown DDS setting {name!r}; {hint}")
+                hint = did_you_mean(name, known) or f"; known are {', '.join(known)}"
+                raise ConfigurationError(f"{source}: unknown DDS setting {name!r}{hint}")
         values = dict(settings)
         if "peers" in values:
             values["peers"] = tuple(values["peers"])

@@ -79,6 +79,11 @@ def close_domain(domain_id: int) -> None:
             delete(found.domain)
 
 
+def must_rejoin() -> bool:
+    """Whether a domain has to be left and joined anew, since its address is another one now."""
+    return any(found.sockets.has_moved for found in list(_open.values()))
+
+
 def _effective_xml(domain_id: int, config: DdsConfig) -> str:
     """Return what the library gets: our settings, or the user's own laid over our defaults."""
     uri, release = user_xml(), loaded().release

@@ -3,8 +3,8 @@
 
 CycloneDDS looks at its interfaces once, when a domain starts. An interface that is made anew (a
 VPN that was restarted) has another index: the multicast groups that were joined are gone, and the
-filters of the sockets name the old one. Another address cannot be followed, since all peers were
-told the old one; that is said.
+filters of the sockets name the old one. Another address means that the domain must be joined anew,
+since all peers know the old one; that is said, and whoever runs the domain does it.
 """
 
 from __future__ import annotations
@@ -40,6 +40,8 @@ class InterfaceSockets:
         self._indices = {socket.if_indextoname(index): index for index in indices}
         self._troubles = dict.fromkeys(self._indices, "")
         self._groups = {name: _groups_of(name) for name in self._indices}
+        self.has_moved = False
+        """Whether an interface has another address in place of the one that peers know."""
         sockets.receive_only_from(indices)
 
     def add(self, opened: Sockets) -> None:
@@ -49,6 +51,7 @@ class InterfaceSockets:
 
     def update(self) -> Iterator[str]:
         """Use interfaces again that came back; yield one line for each change."""
+        self.has_moved = False
         for name, before in self._troubles.items():
             trouble = self._trouble(name)
             if not trouble:
@@ -71,7 +74,8 @@ class InterfaceSockets:
             was = ", ".join(sorted(self._addresses))
             if now is None:
                 return f"has lost its address {was}; waiting for it"
-            return f"has the address {now} in place of {was}, which DDS cannot follow; restart"
+            self.has_moved = True
+            return f"has the address {now} in place of {was}: its domain must be joined anew"
         return ""
 
     def _use(self, name: str) -> None:

@@ -7,10 +7,10 @@ import fcntl
 import socket
 import struct
 from contextlib import suppress
-from difflib import get_close_matches
 from ipaddress import ip_address
 
 from safety_island.errors import ConfigurationError
+from safety_island.words import did_you_mean
 
 LOOPBACK = "lo"
 _SIOCGIFFLAGS = 0x8913
@@ -27,8 +27,7 @@ def check_exists(name: str) -> None:
     """Raise ConfigurationError unless the interface exists."""
     found = interfaces()
     if name not in found:
-        near = get_close_matches(name, found, n=1)
-        hint = f"; did you mean {near[0]}?" if near else ""
+        hint = did_you_mean(name, found)
         raise ConfigurationError(
             f"network interface {name!r} does not exist; this machine has"
             f" {', '.join(found)}{hint}. Choose one with --interface or in the configuration"

@@ -73,6 +73,10 @@ class LifeCycle:
         is_at_rest = abs(self._speed) < slow and abs(last.velocity) < slow
         return not (is_at_rest and last.acceleration <= 0.0)
 
+    def latch(self, cause: Reason) -> None:
+        """Begin in silence, as the process did that this one takes the place of."""
+        self.life = Life(State.SILENT, cause, cause)
+
     def begin(self, now: float, slept_s: float, skipped: int) -> bool:
         """Begin a tick; True when the process stood still, and everything begins anew.
 

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from difflib import get_close_matches
 from functools import cache
 from importlib.resources import files
 
@@ -13,6 +12,7 @@ from safety_island.messages.description import Struct
 from safety_island.messages.errors import UnknownTypeError
 from safety_island.messages.idl import parse_idl
 from safety_island.messages.type_hash import referenced, type_hash
+from safety_island.words import did_you_mean
 
 
 @dataclass(frozen=True)
@@ -70,8 +70,7 @@ def struct_of(name: str) -> Struct:
     try:
         return _structs()[name]
     except KeyError:
-        near = get_close_matches(name, _structs(), n=1)
-        hint = f"; did you mean {near[0]}?" if near else ""
+        hint = did_you_mean(name, _structs())
         raise UnknownTypeError(f"unknown message type {name!r}{hint}") from None
 
 

@@ -181,10 +181,11 @@ print(json.dumps({active!r}), flush=True)
 open({path!r} + "-active", "w").close()
 time.sleep(0.4)
 open({path!r}, "a").write("ready\\n")
-print(json.dumps({ready!r}), flush=True)
 """
-    texts = {"active": TICK, "ready": TICK | {"state": "READY"}, "path": str(path)}
-    end = NOTE_END.format(lines=(), path=str(path), name=ISLAND, others=())
+    texts = {"active": TICK, "path": str(path)}
+    # READY is said when SIGTERM is no longer ignored: it may come at once.
+    ready = (TICK | {"state": "READY"},)
+    end = NOTE_END.format(lines=ready, path=str(path), name=ISLAND, others=())
     island = child(ISLAND, code.format(**texts) + end)
     vehicle = noting(VEHICLE, path, STATUS, VEHICLE_SUMMARY, others=(BRIDGE, "active"))
     run(island, noting(BRIDGE, path), vehicle)

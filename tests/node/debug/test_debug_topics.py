@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from safety_island.control.follower import TrajectoryFollower
-from safety_island.control.kernel import JIT
 from safety_island.dds import topics
+from safety_island.kernel.kernel import JIT
 from safety_island.messages.codec import decode
 from safety_island.node import ControllerNode
 from safety_island.node.debug import DebugTopics, ObservedFollower

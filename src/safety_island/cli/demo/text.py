@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 
 from safety_island.cli.demo.events import DemoState, KeyEvent
+from safety_island.words import in_words
 
 UNKNOWN = "-"
 
@@ -26,7 +27,7 @@ def controller(state: DemoState) -> str:
         return str(state.tick["longitudinal_state"]) + (
             f", MPC {state.tick['mpc_status']}" if failed else ""
         )
-    return str(state.tick["outcome"]).lower().replace("_", " ")
+    return in_words(str(state.tick["outcome"]))
 
 
 def waiting_for(state: DemoState) -> str:

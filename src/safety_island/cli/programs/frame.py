@@ -7,12 +7,12 @@ import argparse
 import sys
 from collections.abc import Callable
 
-from safety_island.build.built import built
 from safety_island.cli import options
 from safety_island.cli.parser import Parser
 from safety_island.cli.stopping import StopAtOnce, StopFlag
 from safety_island.dds.config import DdsConfig
 from safety_island.errors import IslandError
+from safety_island.targets.package.built import built
 
 DOMAIN, INTERFACE = 2, "lo"
 """Used from sources; a built program has those of its configuration."""
@@ -31,7 +31,7 @@ def run(name: str, purpose: str, body: Body) -> int:
             stop = StopFlag()
             with on_stop(stop.set):
                 start.disarm()
-                dds = DdsConfig(arguments.interface or None, library=arguments.ddsc)
+                dds = DdsConfig(arguments.interface, library=arguments.ddsc)
                 return body(arguments, dds, stop)
     except IslandError as error:
         for line in str(error).splitlines():
@@ -50,7 +50,8 @@ def _parser(name: str, purpose: str) -> Parser:
     options.add_domain(parser, domain, "the safety island")
     parser.add_argument(
         "--interface",
-        default=interface,
+        type=options.interface,
+        default=interface or None,
         metavar="NAME",
         help=f"network interface (default: {interface or 'the library chooses'})",
     )

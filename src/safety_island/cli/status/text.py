@@ -18,6 +18,7 @@ from safety_island.control.status import ControllerLimit, LongitudinalState, Mod
 from safety_island.life_cycle.state import State
 from safety_island.messages.arm import ArmResult
 from safety_island.messages.status_fields import Status
+from safety_island.words import in_words
 
 
 def duration(seconds: float) -> str:
@@ -105,7 +106,7 @@ def mode(status: Status) -> str:
 
 
 def _asked(status: Status) -> str:
-    result = name_of(ArmResult, status.arm_result).lower().replace("_", " ")
+    result = in_words(name_of(ArmResult, status.arm_result))
     return f"asked to arm: {result}"
 
 

@@ -15,6 +15,7 @@ from safety_island.gate.reason import SampleReason
 from safety_island.gate.warning import InputWarning
 from safety_island.life_cycle.state import State
 from safety_island.messages.status_fields import InputStatus, Status
+from safety_island.words import in_words
 
 WIDTH = 96
 SILENT_AFTER_S = 1.0
@@ -77,7 +78,7 @@ def _notes(item: InputStatus) -> Text:
         if count
     ]
     notes = Text(", ".join(refused), style="red" if item.refused_in_a_row else "")
-    warnings = ", ".join(flags_of(InputWarning, item.warnings)).lower().replace("_", " ")
+    warnings = in_words(", ".join(flags_of(InputWarning, item.warnings)))
     if warnings:
         notes.append(f"{'; ' if refused else ''}warning: {warnings}", style="yellow")
     return notes

@@ -9,10 +9,10 @@ import socket
 import struct
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from difflib import get_close_matches
 from ipaddress import IPv4Address, IPv4Interface
 
 from safety_island.platform.interfaces import Clock, NetworkError
+from safety_island.words import did_you_mean
 
 SIOCGIFFLAGS = 0x8913
 SIOCGIFADDR = 0x8915
@@ -91,8 +91,7 @@ class PosixNetwork:
         """What the kernel says of the interface."""
         names = [name for _, name in socket.if_nameindex()]
         if interface not in names:
-            near = get_close_matches(interface, names, n=1)
-            hint = f"; did you mean {near[0]}?" if near else ""
+            hint = did_you_mean(interface, names)
             return f"there is no such interface; this machine has {', '.join(sorted(names))}{hint}"
         address = self.address(interface)
         if address is not None:
