@@ -3,13 +3,13 @@
 
 from __future__ import annotations
 
-import ctypes as ct
 import time
 
 import pytest
 
-from safety_island.dds import raw_topic
 from safety_island.dds.endpoints import Publisher, Subscription
+from safety_island.dds.library.functions import PROTOTYPES
+from safety_island.dds.library.loading import loaded
 from safety_island.dds.qos import LATCHED, Qos
 from safety_island.messages.inputs import STEERING, Steering, encode_steering
 from safety_island.messages.wire import Time
@@ -138,10 +138,8 @@ def test_a_publisher_that_unregisters_is_gone_until_it_sends_again(rig: Rig) -> 
     publisher, subscription = _publisher(rig), _subscription(rig)
     assert publisher.write(_sample(1))
     assert rig.receive(subscription) == [_sample(1)]
-    unregister = raw_topic._function(
-        "dds_unregister_instance", ct.c_int32, raw_topic._entity, ct.c_char_p
-    )
-    assert unregister(publisher._ref, bytes(1)) == 0
+    unregister = PROTOTYPES["dds_dispose"].bind(loaded().handle, "dds_unregister_instance")
+    assert unregister(publisher.entity, bytes(1)) == 0
     rig.until(lambda: not subscription.matched())
     assert _late(rig) == []
     assert publisher.write(_sample(2))

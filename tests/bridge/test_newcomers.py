@@ -8,8 +8,8 @@ from dataclasses import replace
 
 import pytest
 
-from safety_island.dds.discovery import PUBLICATIONS
 from safety_island.dds.endpoints import Publisher, Subscription
+from safety_island.dds.library.layouts import PUBLICATIONS
 from safety_island.dds.qos import LATCHED, Qos
 from safety_island.messages.inputs import STEERING, Steering, encode_steering
 from safety_island.messages.wire import Time

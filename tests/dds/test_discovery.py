@@ -3,11 +3,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import pytest
 
-from safety_island.dds import binding, discovery, topics
+from safety_island.dds import topics
+from safety_island.dds.library.builtin import BATCH, BuiltinReader, RawEndpoint
 from tests.dds.conftest import NewParticipant
 from tests.dds.waiting import wait_for
 
@@ -19,22 +18,22 @@ def test_more_events_than_one_batch_are_all_noted(
 ) -> None:
     """They came while nobody looked: a tick must not see the rest of them only in the next one."""
     taken: list[int] = []
-    take = binding.take_endpoints
+    take = BuiltinReader.take
 
-    def counted(reader: int, limit: int) -> list[Any]:
-        events = take(reader, limit)
+    def counted(reader: BuiltinReader) -> list[RawEndpoint]:
+        events = take(reader)
         taken.append(len(events))
         return events
 
     own, other = participant(), participant()
-    count = discovery._BATCH + 44
+    count = BATCH + 44
     for _ in range(count):
         other.publisher(*TOPIC)
     reader = own.subscription(*TOPIC)
     wait_for(lambda: reader.matched() == count, timeout_s=60.0)
-    monkeypatch.setattr(binding, "take_endpoints", counted)
+    monkeypatch.setattr(BuiltinReader, "take", counted)
     assert len(own.writers(*TOPIC)) == count
-    assert taken[0] == discovery._BATCH < sum(taken)
+    assert taken[0] == BATCH < sum(taken)
 
 
 def test_a_publisher_of_another_type_is_none_of_ours(participant: NewParticipant) -> None:

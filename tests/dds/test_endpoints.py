@@ -8,10 +8,12 @@ import signal
 import time
 
 import pytest
-from cyclonedds.internal import dds_c_t
 
-from safety_island.dds import binding, raw_topic, topics
+from safety_island.dds import topics
 from safety_island.dds.endpoints import Publisher, Subscription
+from safety_island.dds.library.functions import PROTOTYPES
+from safety_island.dds.library.layouts import ANY, SampleInfo
+from safety_island.dds.library.loading import loaded
 from safety_island.dds.participant import Participant
 from safety_island.dds.qos import DEFAULT, LATCHED, Qos
 from safety_island.dds.sample import Sample
@@ -209,19 +211,9 @@ def test_a_reader_that_stands_still_cannot_block_a_writer_for_long(
 def _unread(subscription: Subscription) -> int:
     """How many samples wait in the reader; reads them without taking them."""
     most = 1024
-    found, infos = (ct.c_void_p * most)(), (dds_c_t.sample_info * most)()
-    count: int = _READ(subscription._ref, found, most, infos, binding.ANY)
+    found, infos = (ct.c_void_p * most)(), (SampleInfo * most)()
+    read = PROTOTYPES["dds_takecdr"].bind(loaded().handle, "dds_readcdr")
+    count: int = read(subscription.entity, found, most, infos, ANY)
     for data in found[:count]:
-        raw_topic._release(data)
+        loaded().ddsi_serdata_unref(data)
     return count
-
-
-_READ = raw_topic._function(
-    "dds_readcdr",
-    ct.c_int32,
-    dds_c_t.entity,
-    ct.POINTER(ct.c_void_p),
-    ct.c_uint32,
-    ct.POINTER(dds_c_t.sample_info),
-    ct.c_uint32,
-)

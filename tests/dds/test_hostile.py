@@ -44,7 +44,7 @@ class Channel:
     def __init__(self, make: NewParticipant, entry: TopicEntry) -> None:
         other = make("attacker")
         name = ("rt" + entry.name, entry.type_name)
-        other._topics[name] = OpaqueTopic(other._participant, *name)
+        other._topics[name] = OpaqueTopic(other.handle, *name)
         self.publisher: Publisher = other.publisher(entry.name, entry.type_name)
         self.subscription: Subscription = make().subscription(entry.name, entry.type_name, DEEP)
         self.decode: Callable[[bytes], Any] = DECODE[entry.type_name]

@@ -7,7 +7,6 @@ import threading
 from dataclasses import dataclass
 
 import pytest
-from cyclonedds.core import DDSException
 from cyclonedds.domain import DomainParticipant
 from cyclonedds.idl import IdlStruct
 from cyclonedds.idl.types import float32, int32, uint32
@@ -21,6 +20,7 @@ from safety_island.dds import presence, topics
 from safety_island.dds.config import DdsConfig
 from safety_island.dds.endpoints import Subscription
 from safety_island.dds.errors import DdsError
+from safety_island.dds.library.loading import loaded
 from safety_island.dds.participant import Participant
 from safety_island.dds.qos import DEFAULT, LATCHED, Qos
 from safety_island.dds.raw_topic import OpaqueTopic
@@ -127,7 +127,7 @@ def test_the_node_is_announced_with_its_endpoints(participant: NewParticipant) -
 def _presence_listener(own: Participant) -> Subscription:
     topic = own._topic(presence.TOPIC, presence.TYPE)
     qos = LATCHED.with_depth(64)
-    return Subscription(own._participant, topic, presence.TYPE, qos, lambda _: None)
+    return Subscription(own.handle, topic, presence.TYPE, qos, lambda _: None)
 
 
 def test_another_type_on_our_topic_does_not_match_and_is_told(
@@ -288,7 +288,7 @@ def test_an_unknown_type_matches_a_typed_program_of_others(
 
 
 def _opaque(own: Participant) -> OpaqueTopic:
-    return OpaqueTopic(own._participant, "rt" + STEERING.name, STEERING.type_name)
+    return OpaqueTopic(own.handle, "rt" + STEERING.name, STEERING.type_name)
 
 
 @pytest.mark.parametrize("topic", ["", "a/b", "/a//b", "/a/", "/1a", "/a-b", "/a__b", "/a b", "/"])
@@ -331,12 +331,9 @@ def test_a_closed_participant_is_told(participant: NewParticipant) -> None:
 def test_a_participant_that_the_library_refuses_leaves_no_domain_behind(
     domain_id: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def fails(*_: object) -> None:
-        raise DDSException(DDSException.DDS_RETCODE_OUT_OF_RESOURCES)
-
     with monkeypatch.context() as patch:
-        patch.setattr("safety_island.dds.participant.DomainParticipant", fails)
-        with pytest.raises(DdsError, match=f"no participant in domain {domain_id}: .*RESOURCES"):
+        patch.setattr(loaded(), "dds_create_participant", lambda *_: -5)
+        with pytest.raises(DdsError, match=f"no participant in domain {domain_id}: .*resources"):
             Participant(domain_id, LOOPBACK)
     Participant(domain_id, DdsConfig(loopback_only=True, max_message_size=9000)).close()
 

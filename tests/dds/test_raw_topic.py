@@ -10,9 +10,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from safety_island.dds import raw_topic
-from safety_island.dds.binding import RETCODE_BAD_PARAMETER
 from safety_island.dds.endpoints import Publisher, Subscription
 from safety_island.dds.errors import DdsError
+from safety_island.dds.library.entity import RETCODE_BAD_PARAMETER
 from safety_island.dds.qos import DEFAULT
 from safety_island.dds.raw_topic import OpaqueTopic, Room, filled
 from safety_island.messages import codec, inputs, registry
@@ -38,9 +38,9 @@ def pair(participant: NewParticipant) -> tuple[Publisher, Subscription]:
 
 def test_a_sample_comes_with_its_writer_and_its_time(pair: tuple[Publisher, Subscription]) -> None:
     publisher, subscription = pair
-    assert raw_topic.take(subscription._ref, 10, Room()) == []
-    assert raw_topic.write(publisher._ref, DATA) == 0
-    (sample,) = raw_topic.take(subscription._ref, 10, Room())
+    assert raw_topic.take(subscription.entity, 10, Room()) == []
+    assert raw_topic.write(publisher.entity, DATA) == 0
+    (sample,) = raw_topic.take(subscription.entity, 10, Room())
     assert type(sample.data) is bytes and sample.data == DATA
     assert sample.valid is True and sample.is_alive
     assert sample.source_timestamp_ns > 1e18
@@ -54,8 +54,8 @@ def test_more_samples_than_a_batch_come_in_order(participant: NewParticipant) ->
     sent = [inputs.encode_steering(inputs.Steering(Time(n, 0), 0.5)) for n in range(200)]
     assert all(publisher.write(data) for data in sent)
     room = Room()
-    limited = raw_topic.take(subscription._ref, 70, room)
-    rest = raw_topic.take(subscription._ref, 999, room)
+    limited = raw_topic.take(subscription.entity, 70, room)
+    rest = raw_topic.take(subscription.entity, 999, room)
     assert [sample.data for sample in limited + rest] == sent
     assert len(limited) == 70
 
@@ -74,7 +74,7 @@ def test_a_dead_entity_is_an_error() -> None:
 def test_data_shorter_than_a_header_never_reach_the_library(
     size: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(raw_topic, "_from_bytes", None)
+    monkeypatch.setattr(raw_topic, "loaded", None)
     assert raw_topic.write(1, bytes(size)) == RETCODE_BAD_PARAMETER
 
 
@@ -126,7 +126,7 @@ def ends(participant: NewParticipant) -> Callable[[str], Ends]:
 def _ends(participant: NewParticipant, name: str) -> Ends:
     """Return a writer whose library checks, one that checks nothing, and a subscription."""
     topic, other = f"/raw/{name.split('/')[2]}", participant("attacker")
-    other._topics[f"rt{topic}", name] = OpaqueTopic(other._participant, f"rt{topic}", name)
+    other._topics[f"rt{topic}", name] = OpaqueTopic(other.handle, f"rt{topic}", name)
     publishers = participant().publisher(topic, name), other.publisher(topic, name)
     subscription = participant().subscription(topic, name, DEFAULT.with_depth(256))
     wait_for(lambda: subscription.matched() == 2)

@@ -11,10 +11,14 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from cyclonedds.builtin import BuiltinDataReader
+from cyclonedds.builtin import (
+    BuiltinDataReader,
+    BuiltinTopicDcpsPublication,
+    BuiltinTopicDcpsSubscription,
+)
+from cyclonedds.domain import DomainParticipant
 
 from safety_island.dds import topics
-from safety_island.dds.discovery import PUBLICATIONS, SUBSCRIPTIONS
 from safety_island.dds.qos import DEFAULT, LATCHED, Qos
 from safety_island.dds.raw_topic import OpaqueTopic
 from safety_island.messages import codec, inputs, registry
@@ -44,7 +48,7 @@ def test_every_type_matches_in_both_directions(
     for name in registry.names():
         topic = topic_of(name)
         if opaque:
-            made = OpaqueTopic(own._participant, f"rt{topic}", name)
+            made = OpaqueTopic(own.handle, f"rt{topic}", name)
             own._topics[f"rt{topic}", name] = made
         publisher = own.publisher(topic, name, DEFAULT)
         ends.append((publisher, own.subscription(topic, name, BEST_EFFORT, ignore_own=True)))
@@ -131,11 +135,15 @@ def _mode(mode: int) -> bytes:
 
 
 def test_no_endpoint_announces_type_information(participant: NewParticipant) -> None:
-    own, other = participant(), participant()
+    own = participant()
+    peer = DomainParticipant(own.domain_id)
     publisher = own.publisher("/a", inputs.OPERATION_MODE)
     subscription = own.subscription("/a", inputs.OPERATION_MODE)
-    for kind, guid in ((PUBLICATIONS, publisher.guid), (SUBSCRIPTIONS, subscription.guid)):
-        reader = BuiltinDataReader(other._participant, kind)
+    for kind, guid in (
+        (BuiltinTopicDcpsPublication, publisher.guid),
+        (BuiltinTopicDcpsSubscription, subscription.guid),
+    ):
+        reader = BuiltinDataReader(peer, kind)
         known: dict[bytes, Any] = {}
 
         def is_found(reader: Any = reader, known: Any = known, guid: bytes = guid) -> bool:

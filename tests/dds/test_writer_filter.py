@@ -9,12 +9,12 @@ import platform
 from pathlib import Path
 
 import pytest
-from cyclonedds.internal import dds_c_t
 from llvmlite import binding as llvm
 
 from safety_island.dds import topics, writer_filter
 from safety_island.dds.endpoints import Publisher, Subscription
 from safety_island.dds.errors import DdsError
+from safety_island.dds.library.layouts import SampleInfo
 from safety_island.dds.qos import DEFAULT, LATCHED, Qos
 from safety_island.dds.writer_filter import CODE, State, WriterFilter, function_address
 from safety_island.messages import inputs
@@ -49,7 +49,7 @@ def test_it_keeps_one_writer_and_counts_the_rest() -> None:
     address = function_address()
     assert address is not None
     keeps = ct.CFUNCTYPE(ct.c_bool, ct.c_void_p, ct.c_void_p)(address)
-    info, state = dds_c_t.sample_info(), State()
+    info, state = SampleInfo(), State()
     info.publication_handle = 2**63 + 5
 
     def asked(writer: int) -> bool:

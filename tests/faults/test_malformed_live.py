@@ -47,7 +47,7 @@ class Live:
         island, other = make_participant(), make_participant("main_compute")
         for one in topics.INPUTS:  # whatever is written, no type stands in the way
             name = ("rt" + one.name, one.type_name)
-            other._topics[name] = OpaqueTopic(other._participant, *name)
+            other._topics[name] = OpaqueTopic(other.handle, *name)
         self.node = ControllerNode(self.platform, island, follower, parameters)
         world = World(load_course("s-curve"), 1000.0)
         self.main_compute = MainCompute(world, other, self.clock)

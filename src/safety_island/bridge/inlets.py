@@ -5,9 +5,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 
-from safety_island.dds.binding import RawSample
 from safety_island.dds.endpoints import Subscription
 from safety_island.dds.qos import Qos
+from safety_island.dds.raw_topic import RawSample
 
 Taken = list[tuple[Qos, RawSample]]
 """Samples and notices, each with what the subscription that received it asks for."""

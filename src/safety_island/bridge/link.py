@@ -22,12 +22,12 @@ from safety_island.bridge.matching import NO_OFFER, offer_beyond, request, unmet
 from safety_island.bridge.outlet import HOLD_S, Counts, Outlet
 from safety_island.bridge.outlets import Outlets
 from safety_island.bridge.routes import Route
-from safety_island.dds.binding import RawSample
 from safety_island.dds.discovery import RemoteEndpoint
 from safety_island.dds.endpoints import Subscription
 from safety_island.dds.mismatch import incompatible_policies
 from safety_island.dds.participant import Participant
 from safety_island.dds.qos import Qos
+from safety_island.dds.raw_topic import RawSample
 from safety_island.dds.wait_group import WaitGroup
 
 Say = Callable[[str], None]

@@ -34,7 +34,8 @@ loopback, where the island is by default; one with Fast DDS does.
         "with that library (default: ros2)",
     )
     options.add_domain(parser, 2, "the safety island")
-    options.add_network(parser)
+    options.add_interface(parser)
+    options.add_peers_and_tag(parser)
 
 
 def execute(arguments: argparse.Namespace) -> int:
@@ -49,9 +50,9 @@ def variables(arguments: argparse.Namespace) -> Mapping[str, str]:
 
     Raises ConfigurationError for what it cannot do.
     """
-    from safety_island.dds.config import URI
+    from safety_island.dds.config import URI, DdsConfig
 
-    config = options.dds_config(arguments)
+    config = DdsConfig(interface=arguments.interface, **options.peers_and_tags(arguments))
     xml = config.peer_xml(arguments.domain)
     if arguments.whom == "cyclonedds":
         return {URI: xml}

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import argparse
 from math import isfinite
+from pathlib import Path
 from typing import TYPE_CHECKING, TypedDict
 
 if TYPE_CHECKING:
@@ -104,6 +105,7 @@ def add_network(parser: argparse.ArgumentParser) -> None:
     """Add what says how DDS uses the network; ``dds_config`` reads it."""
     add_interface(parser)
     add_peers_and_tag(parser)
+    add_library(parser)
 
 
 def add_interface(parser: argparse.ArgumentParser) -> None:
@@ -139,11 +141,23 @@ def add_peers_and_tag(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_library(parser: argparse.ArgumentParser) -> None:
+    """Add ``--ddsc``."""
+    parser.add_argument(
+        "--ddsc",
+        type=Path,
+        metavar="PATH",
+        help="CycloneDDS's C library, libddsc.so of release 0.10 or 11, or its folder (default: "
+        "SAFETY_ISLAND_DDSC, else that of the package cyclonedds, of the system, of ROS 2)",
+    )
+
+
 def dds_config(arguments: argparse.Namespace) -> DdsConfig:
     """Return how DDS uses the network, as the options of ``add_network`` say."""
     from safety_island.dds.config import DdsConfig
 
-    return DdsConfig(interface=arguments.interface, **peers_and_tags(arguments))
+    settings = peers_and_tags(arguments)
+    return DdsConfig(interface=arguments.interface, library=arguments.ddsc, **settings)
 
 
 def peers_and_tags(arguments: argparse.Namespace) -> PeersAndTags:

@@ -89,6 +89,7 @@ def _add_network(parser: argparse.ArgumentParser) -> None:
         "instead)",
     )
     options.add_peers_and_tag(parser)
+    options.add_library(parser)
     parser.add_argument(
         "--sntp",
         metavar="SERVER",

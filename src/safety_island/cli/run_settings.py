@@ -32,6 +32,7 @@ _IDLE: dict[str, dict[str, str]] = {
         "--interface": _NO_NETWORK,
         "--peer": _NO_NETWORK,
         "--domain-tag": _NO_NETWORK,
+        "--ddsc": _NO_NETWORK,
         "--sntp": "has virtual time and asks no server",
         "--realtime": "has virtual time",
         "--cpu": "has virtual time",
@@ -71,7 +72,12 @@ def run_settings(arguments: argparse.Namespace, config: RunConfiguration) -> Run
     return RunSettings(
         target=config.target,
         domain_id=config.dds_domain_id if arguments.domain is None else arguments.domain,
-        dds=DdsConfig(interface, log_level=config.dds_log_level, **peers_and_tags(arguments)),
+        dds=DdsConfig(
+            interface,
+            log_level=config.dds_log_level,
+            library=arguments.ddsc,
+            **peers_and_tags(arguments),
+        ),
         interfaces=() if is_virtual else tuple(_configured(config, interface)),
         address_limit_s=config.address_limit_s,
         sntp_server=None if is_virtual else arguments.sntp or config.sntp_server,

@@ -5,9 +5,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
+from pathlib import Path
 from typing import Any, Literal
 from xml.sax.saxutils import quoteattr
 
+from safety_island.dds.library.release import Release
 from safety_island.dds.network import (
     LOOPBACK,
     check_interface,
@@ -45,7 +47,8 @@ class DdsConfig:
     after which others miss this process; ``domain_tag`` keeps apart what shares a domain id, and
     ``domain_tags`` are those of single domains, in its place; ``loss`` is the share of sent packets
     to drop (0 to 1, for tests); ``log_level`` is what the library tells on standard error (0
-    nothing, 1 warnings and its configuration, 2 everything).
+    nothing, 1 warnings and its configuration, 2 everything); ``library`` is CycloneDDS's C library
+    or its folder (None: the first that is found).
     ConfigurationError for every value that cannot work.
     """
 
@@ -60,6 +63,7 @@ class DdsConfig:
     domain_tags: tuple[tuple[int, str], ...] = ()
     loss: float = 0.0
     log_level: int = 0
+    library: Path | None = None
 
     def __post_init__(self) -> None:
         """Check what can be checked without the network."""
@@ -114,25 +118,30 @@ class DdsConfig:
             " nobody there; name the other machines with --peer ADDRESS, on both sides"
         )
 
-    def xml(self, domain_id: int) -> str:
-        """Return the CycloneDDS configuration of one domain."""
+    def xml(self, domain_id: int, release: Release = Release.V11) -> str:
+        """Return the CycloneDDS configuration of one domain, in elements of that release."""
         check_domain_id(domain_id)
-        general = self._interfaces() + self._transport()
+        general = self._interfaces(release) + self._transport()
         general += _element("AllowMulticast", self._allow_multicast())
         general += _element("MaxMessageSize", f"{self.max_message_size}B")
         general += _element("FragmentSize", f"{self.max_message_size - _MESSAGE_OVERHEAD}B")
-        domain = _element("General", general) + _element("Discovery", self._discovery(domain_id))
-        domain += _COMPATIBILITY + _element("Internal", self._internal())
+        discovery = self._discovery(domain_id, release)
+        domain = _element("General", general) + _element("Discovery", discovery)
+        domain += _compatibility(release) + _element("Internal", self._internal())
         return _document(domain + _tracing(self.log_level))
 
     @property
     def _interface(self) -> str | None:
         return LOOPBACK if self.loopback_only else self.interface
 
-    def _interfaces(self) -> str:
+    def _interfaces(self, release: Release) -> str:
+        """Return the interface; loopback carries multicast, which release 0.10 does not know."""
         if self._interface is None:
             return ""
-        return f"<Interfaces><NetworkInterface name={quoteattr(self._interface)}/></Interfaces>"
+        forced = release is Release.V0_10 and self._interface == LOOPBACK
+        multicast = ' multicast="true"' if forced else ""
+        named = f"<NetworkInterface name={quoteattr(self._interface)}{multicast}/>"
+        return _element("Interfaces", named)
 
     def _transport(self) -> str:
         """Return UDP over IPv6 when that is what the peers have."""
@@ -143,7 +152,7 @@ class DdsConfig:
         allowed = _ALLOW_MULTICAST[self.multicast]
         return "spdp" if self._interface == LOOPBACK and allowed == "true" else allowed
 
-    def _discovery(self, domain_id: int) -> str:
+    def _discovery(self, domain_id: int, release: Release) -> str:
         """Unicast discovery needs well-known ports, hence a participant index; multicast none.
 
         On loopback both: peers there use the one or the other, by their version and settings.
@@ -152,17 +161,19 @@ class DdsConfig:
         unicast = on_loopback or bool(self.peers) or not self._reaches_by_multicast()
         found = _element("ParticipantIndex", "auto" if unicast else "none")
         found += _element("MaxAutoParticipantIndex", str(max_participant_index(domain_id)))
-        if on_loopback:
-            found += f'<Peers AddLocalhost="true">{self._peers()}</Peers>'
+        if not on_loopback:
+            found += _element("Peers", self._peers(release))
+        elif release is Release.V0_10:
+            found += _element("Peers", _LOCALHOST + self._peers(release))
         else:
-            found += _element("Peers", self._peers())
+            found += f'<Peers AddLocalhost="true">{self._peers(release)}</Peers>'
         return found + _lease(self.lease_s) + self._tag(domain_id)
 
-    def overlay_xml(self, domain_id: int) -> str:
+    def overlay_xml(self, domain_id: int, release: Release = Release.V11) -> str:
         """Return what is laid over a user's own XML: the settings that it was not to decide."""
         found = self._tag(domain_id)
         if self.peers:
-            found += _element("Peers", self._peers())
+            found += _element("Peers", self._peers(release))
         return _document(_element("Discovery", found)) if found else ""
 
     def peer_xml(self, domain_id: int) -> str:
@@ -171,7 +182,7 @@ class DdsConfig:
         In elements that CycloneDDS 0.10 knows as well.
         """
         check_domain_id(domain_id)
-        general = self._interfaces() + self._transport()
+        general = self._interfaces(Release.V11) + self._transport()
         if self._interface == LOOPBACK:
             general += _element("AllowMulticast", self._allow_multicast())
             discovery = _element("ParticipantIndex", "auto") + _element(
@@ -193,9 +204,10 @@ class DdsConfig:
     def _tag(self, domain_id: int) -> str:
         return _element("Tag", _escape(self.tag(domain_id)))
 
-    def _peers(self) -> str:
-        peers = (f'<Peer Address={quoteattr(p)} PruneDelay="inf"/>' for p in self.peers)
-        return "".join(peers)
+    def _peers(self, release: Release) -> str:
+        """Return the peers, never to be given up; release 0.10 gives none up by itself."""
+        kept = "" if release is Release.V0_10 else ' PruneDelay="inf"'
+        return "".join(f"<Peer Address={quoteattr(peer)}{kept}/>" for peer in self.peers)
 
     def _reaches_by_multicast(self) -> bool:
         if self._allow_multicast() == "false":
@@ -224,11 +236,11 @@ def check_domain_id(domain_id: int) -> None:
         )
 
 
-def defaults_xml(lease_s: float = 1.0, log_level: int = 0) -> str:
+def defaults_xml(lease_s: float = 1.0, log_level: int = 0, release: Release = Release.V11) -> str:
     """Return what a user's own XML is laid over: what peers need to match, and what is told."""
     discovery = _element("Discovery", _lease(lease_s))
     internal = _element("Internal", _KEY_HASH)
-    return _document(_COMPATIBILITY + discovery + internal + _tracing(log_level))
+    return _document(_compatibility(release) + discovery + internal + _tracing(log_level))
 
 
 def _tracing(log_level: int) -> str:
@@ -287,13 +299,18 @@ def _all_ipv6(peers: tuple[str, ...]) -> bool:
     return bool(ipv6)
 
 
-_COMPATIBILITY = _element(
-    "Compatibility",
-    _element("IgnoreTypeInformation", "1.15")
-    + _element("ExplicitlyPublishQosSetToDefault", "true"),
-)
-"""Fast DDS 3 (ROS 2 Kilted) announces type information that the library cannot match with ours, and
-knows history and depth of an endpoint only when they are sent, default or not."""
+def _compatibility(release: Release) -> str:
+    """Return what peers with Fast DDS 3 (ROS 2 Kilted) need.
+
+    They announce type information that release 11 cannot match with ours, and know history and
+    depth of an endpoint only when they are sent, default or not.
+    """
+    ignored = "" if release is Release.V0_10 else _element("IgnoreTypeInformation", "1.15")
+    sent = _element("ExplicitlyPublishQosSetToDefault", "true")
+    return _element("Compatibility", ignored + sent)
+
+
+_LOCALHOST = '<Peer Address="127.0.0.1"/>'
 _KEY_HASH = _element("GenerateKeyhash", "true")
 """Without it Fast DDS and CycloneDDS 0.10 do not see that an endpoint is closed."""
 

@@ -5,25 +5,12 @@ from __future__ import annotations
 
 from collections import deque
 from dataclasses import dataclass
-from typing import Any
 
-from cyclonedds.builtin import (
-    BuiltinDataReader,
-    BuiltinTopic,
-    BuiltinTopicDcpsPublication,
-    BuiltinTopicDcpsSubscription,
-)
-from cyclonedds.domain import DomainParticipant
-from cyclonedds.qos import Policy
-
-from safety_island.dds import binding
+from safety_island.dds.library.builtin import BATCH, BuiltinReader, RawEndpoint
+from safety_island.dds.library.entity import delete, guid_of
 from safety_island.dds.names import ros_topic_name
-from safety_island.dds.qos import Qos, from_cyclone
+from safety_island.dds.qos import Qos
 from safety_island.messages.registry import ros_type_name
-
-_BATCH = 256
-PUBLICATIONS = BuiltinTopicDcpsPublication
-SUBSCRIPTIONS = BuiltinTopicDcpsSubscription
 
 
 @dataclass(frozen=True)
@@ -51,12 +38,13 @@ class RemoteEndpoint:
 class Endpoints:
     """The endpoints of one kind (publications or subscriptions) that are alive now."""
 
-    def __init__(self, participant: DomainParticipant, kind: BuiltinTopic) -> None:
-        self._own = participant.guid.bytes
-        self._reader = BuiltinDataReader(participant, kind)
+    def __init__(self, participant: int, kind: int) -> None:
+        self._own = guid_of(participant)
+        self._participant = participant
+        self._reader = BuiltinReader(participant, kind)
         self._known: dict[bytes, RemoteEndpoint] = {}
         self._found = 0
-        self._gone: deque[RemoteEndpoint] = deque(maxlen=_BATCH)
+        self._gone: deque[RemoteEndpoint] = deque(maxlen=BATCH)
         self._changes = 0
 
     def on(self, topic: str) -> list[RemoteEndpoint]:
@@ -75,20 +63,24 @@ class Endpoints:
         self._refresh()
         return self._changes
 
+    def check_layouts(self, endpoint: int) -> None:
+        """Raise DdsError unless the library describes this own endpoint as is expected."""
+        self._reader.check_layouts(self._participant, endpoint)
+
     def close(self) -> None:
         """Stop listening to discovery."""
-        binding.delete(self._reader)
+        delete(self._reader.entity)
 
     def _refresh(self) -> None:
         while True:
-            events = binding.take_endpoints(self._reader._ref, _BATCH)
+            events = self._reader.take()
             self._changes += len(events)
             for event in events:
                 self._note(event)
-            if len(events) < _BATCH:
+            if len(events) < BATCH:
                 return
 
-    def _note(self, event: binding.RawEndpoint) -> None:
+    def _note(self, event: RawEndpoint) -> None:
         known = self._known.get(event.guid)
         if known is not None and not (event.alive and event.lives == known.lives):
             self._gone.append(self._known.pop(event.guid))
@@ -102,23 +94,22 @@ class Endpoints:
             self._known[event.guid] = _endpoint(event, number)
 
 
-def _endpoint(event: binding.RawEndpoint, number: int) -> RemoteEndpoint:
+def _endpoint(event: RawEndpoint, number: int) -> RemoteEndpoint:
     return RemoteEndpoint(
         guid=event.guid,
         participant=event.participant,
         topic=ros_topic_name(event.topic),
         type_name=ros_type_name(event.type_name),
-        qos=Qos() if event.qos is None else from_cyclone(event.qos),
-        type_hash="" if event.qos is None else _type_hash(event.qos[Policy.Userdata]),
+        qos=event.qos,
+        type_hash=_type_hash(event.user_data),
         handle=event.handle,
         number=number,
         lives=event.lives,
     )
 
 
-def _type_hash(user_data: Any) -> str:
-    text = "" if user_data is None else bytes(user_data.data).decode("latin-1")
-    for item in text.split(";"):
+def _type_hash(user_data: bytes) -> str:
+    for item in user_data.decode("latin-1").split(";"):
         name, _, value = item.partition("=")
         if name == "typehash":
             return value

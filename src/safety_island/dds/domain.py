@@ -10,24 +10,22 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 
-from cyclonedds.core import DDSException
-from cyclonedds.domain import Domain
-
-from safety_island.dds import binding
 from safety_island.dds.config import DdsConfig, check_domain_id, defaults_xml
 from safety_island.dds.errors import DdsError
 from safety_island.dds.follow import InterfaceSockets, follow
+from safety_island.dds.library.entity import checked, delete
+from safety_island.dds.library.loading import choose, loaded
 from safety_island.dds.network import unknown_peer
 from safety_island.dds.receive_filter import opened_sockets
 from safety_island.dds.stderr import captured_log
-from safety_island.dds.trial import why_fatal
+from safety_island.dds.trial import BAD_PEER, why_fatal
 from safety_island.dds.user_xml import URI, check_user_xml, user_xml
 from safety_island.errors import ConfigurationError
 
 
 @dataclass
 class _Open:
-    domain: Domain
+    domain: int
     sockets: InterfaceSockets
     xml: str
     users: int
@@ -43,7 +41,8 @@ def open_domain(domain_id: int, config: DdsConfig) -> None:
     Raises ConfigurationError with the library's own words when it refuses the configuration.
     """
     check_domain_id(domain_id)
-    binding.check_version()
+    if config.library is not None:
+        choose(config.library)
     xml = _effective_xml(domain_id, config)
     with _lock:
         found = _open.get(domain_id)
@@ -77,7 +76,7 @@ def close_domain(domain_id: int) -> None:
         found.users -= 1
         if not found.users:
             del _open[domain_id]
-            binding.delete(found.domain)
+            delete(found.domain)
 
 
 def must_rejoin() -> bool:
@@ -87,14 +86,14 @@ def must_rejoin() -> bool:
 
 def _effective_xml(domain_id: int, config: DdsConfig) -> str:
     """Return what the library gets: our settings, or the user's own laid over our defaults."""
-    uri = user_xml()
+    uri, release = user_xml(), loaded().release
     if uri is not None:
         check_user_xml(uri)
-        over = config.overlay_xml(domain_id)
-        xml = f"{defaults_xml(config.lease_s, config.log_level)},{uri},{over}"
+        over = config.overlay_xml(domain_id, release)
+        xml = f"{defaults_xml(config.lease_s, config.log_level, release)},{uri},{over}"
     else:
         config.check_network()
-        xml = config.xml(domain_id)
+        xml = config.xml(domain_id, release)
         if warning := config.warning():
             print(f"island: warning: {warning}", file=sys.stderr, flush=True)
     if (uri or config.peers) and (fatal := why_fatal(domain_id, xml)):
@@ -114,22 +113,29 @@ def _look_at_interfaces() -> None:
                 print(f"island: DDS domain {domain_id}: {line}", file=sys.stderr, flush=True)
 
 
-def _start(domain_id: int, xml: str) -> tuple[Domain, InterfaceSockets]:
+def _start(domain_id: int, xml: str) -> tuple[int, InterfaceSockets]:
     """Start the library's domain, and close its sockets to all interfaces but those it uses."""
-    try:
-        with opened_sockets() as opened, captured_log(bool(_TRACING.search(xml))) as said:
-            domain = Domain(domain_id, xml)
-    except DDSException as problem:
-        raise ConfigurationError(_explain(domain_id, said.cause or str(problem))) from None
+    with opened_sockets() as opened:
+        domain = _create(domain_id, xml)
     try:
         return domain, InterfaceSockets(opened)
     except DdsError:
-        binding.delete(domain)
+        delete(domain)
         raise
 
 
+def _create(domain_id: int, xml: str) -> int:
+    """Return the library's domain. Raises ConfigurationError with its own words."""
+    library = loaded()
+    try:
+        with captured_log(bool(_TRACING.search(xml))) as said:
+            return checked(library.dds_create_domain(domain_id, xml.encode()), "refused")
+    except DdsError as problem:
+        raise ConfigurationError(_explain(domain_id, said.cause or str(problem))) from None
+
+
 def _explain(domain_id: int, cause: str) -> str:
-    if peer := _BAD_PEER.search(cause):
+    if peer := BAD_PEER.search(cause):
         return unknown_peer(peer[1])
     hints = {
         "receive buffer": "allow more with: sysctl -w net.core.rmem_max=BYTES",
@@ -143,4 +149,3 @@ def _explain(domain_id: int, cause: str) -> str:
 
 _TRACING = re.compile(r"<tr", re.IGNORECASE)
 """The library's trace is on: it is for the user to read as it is."""
-_BAD_PEER = re.compile(r"add_peer_address: (.*?): (?:unknown|not a valid) address")

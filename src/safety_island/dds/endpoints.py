@@ -5,23 +5,21 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import Any
 
-from cyclonedds.core import DDSException, InstanceState, ReadCondition, SampleState, ViewState
-from cyclonedds.domain import DomainParticipant
-from cyclonedds.pub import DataWriter
-from cyclonedds.sub import DataReader
-from cyclonedds.topic import Topic
-
-from safety_island.dds import binding, raw_topic
-from safety_island.dds.errors import DdsError
+from safety_island.dds import raw_topic
+from safety_island.dds.library.builtin import matched_writer
+from safety_island.dds.library.entity import checked, delete, guid_of, strerror
+from safety_island.dds.library.layouts import ANY_INSTANCE, ANY_VIEW, NOT_READ
+from safety_island.dds.library.loading import loaded
+from safety_island.dds.library.policies import endpoint_policies
 from safety_island.dds.names import ros_topic_name
-from safety_island.dds.qos import Qos, cyclone_qos
+from safety_island.dds.qos import Qos
+from safety_island.dds.raw_topic import RawSample, RawTopic
 from safety_island.dds.sample import Sample
 from safety_island.dds.types import type_hash_data
 from safety_island.dds.writer_filter import WriterFilter
 
-_UNREAD = ViewState.Any | InstanceState.Any | SampleState.NotRead
+_UNREAD = ANY_VIEW | ANY_INSTANCE | NOT_READ
 _BATCH = 1024
 UNKNOWN_WRITER = bytes(16)
 """Stands for a writer that was gone before its sample was taken."""
@@ -32,8 +30,8 @@ class Publisher:
 
     def __init__(
         self,
-        participant: DomainParticipant,
-        topic: Topic[Any],
+        participant: int,
+        topic: RawTopic,
         type_name: str,
         qos: Qos,
         on_close: Callable[[Publisher], None],
@@ -44,11 +42,9 @@ class Publisher:
         self.sent = 0
         self.failed = 0
         self.last_error = ""
-        wanted = cyclone_qos(qos, type_hash_data(type_name), writer=True)
-        self._writer: DataWriter[Any] = _create(DataWriter, participant, topic, wanted)
-        self._ref: int = self._writer._ref
+        self.entity = _writer(participant, topic, type_name, qos)
         self._on_close = on_close
-        self.guid: bytes = self._writer.guid.bytes
+        self.guid = guid_of(self.entity)
 
     def write(self, data: bytes) -> bool:
         """Send serialized CDR, header included; True when the library took it.
@@ -56,10 +52,10 @@ class Publisher:
         Never raises and never waits longer than ``qos.MAX_BLOCKING_NS``; a refusal (no CDR of this
         type, or no room in time) is counted and told in ``last_error``.
         """
-        code = raw_topic.write(self._ref, data)
+        code = raw_topic.write(self.entity, data)
         if code < 0:
             self.failed += 1
-            self.last_error = binding.strerror(code)
+            self.last_error = strerror(code)
             return False
         self.sent += 1
         return True
@@ -69,19 +65,20 @@ class Publisher:
 
         Subscriptions that had it receive a notice without data.
         """
-        code = raw_topic.dispose(self._ref)
+        code = raw_topic.dispose(self.entity)
         if code < 0:
             self.failed += 1
-            self.last_error = binding.strerror(code)
+            self.last_error = strerror(code)
 
     def matched(self) -> int:
         """Return how many subscriptions receive from this publisher now."""
-        return len(self._writer.get_matched_subscriptions())
+        count: int = loaded().dds_get_matched_subscriptions(self.entity, None, 0)
+        return max(count, 0)
 
     def close(self) -> None:
         """Leave the topic; the publisher must not be used afterwards."""
         self._on_close(self)
-        binding.delete(self._writer)
+        delete(self.entity)
 
 
 class Subscription:
@@ -94,13 +91,13 @@ class Subscription:
 
     def __init__(
         self,
-        participant: DomainParticipant,
-        topic: Topic[Any],
+        participant: int,
+        topic: RawTopic,
         type_name: str,
         qos: Qos,
         on_close: Callable[[Subscription], None],
         ignore_own: bool = False,
-        on_change: Callable[[Subscription, ReadCondition], None] | None = None,
+        on_change: Callable[[Subscription, int], None] | None = None,
     ) -> None:
         self.topic = ros_topic_name(topic.name)
         self.type_name = type_name
@@ -108,20 +105,19 @@ class Subscription:
         self.received = 0
         self.superseded = 0
         self.invalid = 0
-        wanted = cyclone_qos(qos, type_hash_data(type_name), writer=False, ignore_own=ignore_own)
-        self._filter = WriterFilter(topic._ref)
+        self._filter = WriterFilter(topic.entity)
         self._topic = topic
         self._room = raw_topic.Room()
-        self._new_reader = partial(_create, DataReader, participant, topic, wanted)
+        self._new_reader = partial(_reader, participant, topic, type_name, qos, ignore_own)
         self._on_close, self._on_change = on_close, on_change
         self._open()
 
     def _open(self) -> None:
-        self._reader: DataReader[Any] = self._new_reader()
-        self._ref: int = self._reader._ref
+        self.entity = self._new_reader()
         self._writers: dict[int, bytes] = {}
-        self.condition = ReadCondition(self._reader, _UNREAD)
-        self.guid: bytes = self._reader.guid.bytes
+        condition = loaded().dds_create_readcondition(self.entity, _UNREAD)
+        self.condition = checked(condition, f"no condition for {self.topic}")
+        self.guid = guid_of(self.entity)
 
     @property
     def kept_out(self) -> int:
@@ -135,18 +131,18 @@ class Subscription:
         False when it is not matched, or has written nothing yet: then from all.
         """
         known = [handle for handle, writer in self._writers.items() if writer == guid]
-        alive = [handle for handle in known if binding.matched_writer(self._ref, handle) == guid]
+        alive = [handle for handle in known if matched_writer(self.entity, handle) == guid]
         self._filter.state.writer = alive[-1] if alive else 0
         return bool(alive) or not guid
 
     def renew(self) -> None:
         """Receive again what living writers keep for late subscriptions, by another reader."""
-        reader, condition = self._reader, self.condition
+        reader, condition = self.entity, self.condition
         self._open()
         if self._on_change is not None:
             self._on_change(self, condition)
-        binding.delete(condition)
-        binding.delete(reader)
+        delete(condition)
+        delete(reader)
 
     def take_newest(self) -> Sample | None:
         """Return the newest sample since the last call and drop the older ones; None when none."""
@@ -160,37 +156,38 @@ class Subscription:
         """Return all samples since the last call, oldest first."""
         return [self._sample(raw) for raw in self._take()]
 
-    def take_raw(self) -> list[binding.RawSample]:
+    def take_raw(self) -> list[RawSample]:
         """Return all samples and notices since the last call, oldest first."""
-        taken: list[binding.RawSample] = []
-        while len(batch := raw_topic.take(self._ref, _BATCH, self._room)) == _BATCH:
+        taken: list[RawSample] = []
+        while len(batch := raw_topic.take(self.entity, _BATCH, self._room)) == _BATCH:
             taken += batch
         return taken + batch
 
     def matched(self) -> int:
         """Return how many publishers this subscription receives from now."""
-        return len(self._reader.get_matched_publications())
+        count: int = loaded().dds_get_matched_publications(self.entity, None, 0)
+        return max(count, 0)
 
     def close(self) -> None:
         """Leave the topic; the subscription must not be used afterwards."""
         self._on_close(self)
-        for entity in (self.condition, self._reader, self._topic):
-            binding.delete(entity)
+        for entity in (self.condition, self.entity, self._topic.entity):
+            delete(entity)
 
-    def _take(self) -> list[binding.RawSample]:
-        samples: list[binding.RawSample] = []
-        taken = raw_topic.take(self._ref, _BATCH, self._room)
+    def _take(self) -> list[RawSample]:
+        samples: list[RawSample] = []
+        taken = raw_topic.take(self.entity, _BATCH, self._room)
         samples += [raw for raw in taken if raw.valid]
         self.invalid += len(taken) - len(samples)
         self.received += len(samples)
         return samples
 
-    def _sample(self, raw: binding.RawSample) -> Sample:
+    def _sample(self, raw: RawSample) -> Sample:
         guid = self._writers.get(raw.publication_handle) or self._find(raw.publication_handle)
         return Sample(raw.data, raw.source_timestamp_ns, guid)
 
     def _find(self, handle: int) -> bytes:
-        guid = binding.matched_writer(self._ref, handle)
+        guid = matched_writer(self.entity, handle)
         if guid is None:
             return UNKNOWN_WRITER
         if len(self._writers) >= _BATCH:
@@ -199,8 +196,14 @@ class Subscription:
         return guid
 
 
-def _create(kind: Any, participant: DomainParticipant, topic: Topic[Any], qos: Any) -> Any:
-    try:
-        return kind(participant, topic, qos)
-    except DDSException as problem:
-        raise DdsError(f"{kind.__name__} on {topic.name} was refused: {problem}") from None
+def _writer(participant: int, topic: RawTopic, type_name: str, qos: Qos) -> int:
+    with endpoint_policies(qos, type_hash_data(type_name), writer=True) as wanted:
+        made = loaded().dds_create_writer(participant, topic.entity, wanted, None)
+    return checked(made, f"a publisher on {topic.name} was refused")
+
+
+def _reader(participant: int, topic: RawTopic, type_name: str, qos: Qos, ignore_own: bool) -> int:
+    user_data = type_hash_data(type_name)
+    with endpoint_policies(qos, user_data, writer=False, ignore_own=ignore_own) as wanted:
+        made = loaded().dds_create_reader(participant, topic.entity, wanted, None)
+    return checked(made, f"a subscription on {topic.name} was refused")

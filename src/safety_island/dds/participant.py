@@ -6,17 +6,15 @@ from __future__ import annotations
 from dataclasses import replace
 from types import TracebackType
 
-from cyclonedds.core import DDSException, ReadCondition, WaitSet
-from cyclonedds.domain import DomainParticipant
-from cyclonedds.qos import Policy
-from cyclonedds.qos import Qos as CycloneQos
-
-from safety_island.dds import binding
 from safety_island.dds.config import DdsConfig
-from safety_island.dds.discovery import PUBLICATIONS, SUBSCRIPTIONS, Endpoints, RemoteEndpoint
+from safety_island.dds.discovery import Endpoints, RemoteEndpoint
 from safety_island.dds.domain import close_domain, closed_to_other_interfaces, open_domain
 from safety_island.dds.endpoints import Publisher, Subscription
 from safety_island.dds.errors import DdsError
+from safety_island.dds.library.entity import checked, delete, guid_of
+from safety_island.dds.library.layouts import PUBLICATIONS, SUBSCRIPTIONS
+from safety_island.dds.library.loading import loaded
+from safety_island.dds.library.policies import policies
 from safety_island.dds.mismatch import why_not
 from safety_island.dds.names import dds_topic_name
 from safety_island.dds.presence import (
@@ -55,34 +53,32 @@ class Participant:
         self._topics: dict[tuple[str, str], RawTopic] = {}
         self._publishers: list[Publisher] = []
         self._subscriptions: list[Subscription] = []
-        open_domain(domain_id, config or DdsConfig())
-        self._closed = False
-        try:
-            qos = CycloneQos(Policy.Userdata(PARTICIPANT_USER_DATA))
-            with closed_to_other_interfaces(domain_id):
-                self._participant = DomainParticipant(domain_id, qos)
-        except DDSException as problem:
-            close_domain(domain_id)
-            raise DdsError(f"no participant in domain {domain_id}: {problem}") from None
-        except DdsError:
-            close_domain(domain_id)
-            raise
-        self.guid: bytes = self._participant.guid.bytes
-        self._waitset = WaitSet(self._participant)
-        self._found = {
-            kind: Endpoints(self._participant, kind) for kind in (PUBLICATIONS, SUBSCRIPTIONS)
-        }
-        self._presence = self._publisher(PRESENCE_TOPIC, PRESENCE_TYPE, PRESENCE_QOS)
         self._nodes: Subscription | None = None
         self._node_names: dict[bytes, dict[bytes, str]] = {}
         """Node names by publisher, by participant."""
-        self._announce()
+        self._closed = False
+        open_domain(domain_id, config or DdsConfig())
+        try:
+            self.handle = _participant(domain_id)
+            self._open()
+        except DdsError:
+            close_domain(domain_id)
+            raise
 
-    @property
-    def handle(self) -> int:
-        """The library's number of this participant, for its C functions."""
-        handle: int = self._participant._ref
-        return handle
+    def _open(self) -> None:
+        """Find the others and show itself; what fails leaves no participant behind."""
+        try:
+            self.guid = guid_of(self.handle)
+            made = loaded().dds_create_waitset(self.handle)
+            self._waitset = checked(made, "no wait set could be made")
+            kinds = (PUBLICATIONS, SUBSCRIPTIONS)
+            self._found = {kind: Endpoints(self.handle, kind) for kind in kinds}
+            self._presence = self._publisher(PRESENCE_TOPIC, PRESENCE_TYPE, PRESENCE_QOS)
+            self._found[PUBLICATIONS].check_layouts(self._presence.entity)
+        except DdsError:
+            delete(self.handle)
+            raise
+        self._announce()
 
     def publisher(self, topic: str, type_name: str, qos: Qos = DEFAULT) -> Publisher:
         """Return a new publisher on a ROS topic (``/a/b``) of a ROS type (``pkg/msg/Name``)."""
@@ -97,9 +93,9 @@ class Participant:
         """Return a new subscription; with ``ignore_own`` it is deaf to this participant."""
         own = self._own_topic(dds_topic_name(topic), type_name)
         subscription = Subscription(
-            self._participant, own, type_name, qos, self._forget, ignore_own, self._replace
+            self.handle, own, type_name, qos, self._forget, ignore_own, self._replace
         )
-        self._waitset.attach(subscription.condition)
+        self._wait_for(subscription)
         self._subscriptions.append(subscription)
         self._announce()
         return subscription
@@ -109,7 +105,9 @@ class Participant:
 
         Other Python threads run meanwhile.
         """
-        return self._waitset.wait(round(timeout_s * 1e9)) > 0
+        timeout_ns = round(timeout_s * 1e9)
+        count = loaded().dds_waitset_wait(self._waitset, None, 0, timeout_ns)
+        return checked(count, "waiting for samples failed") > 0
 
     def publications(self, topic: str) -> list[RemoteEndpoint]:
         """Return the publishers of other participants on a ROS topic, whatever their type."""
@@ -132,7 +130,7 @@ class Participant:
             found = self._topic(PRESENCE_TOPIC, PRESENCE_TYPE)
             qos = replace(PRESENCE_QOS, history="keep_all")
             self._nodes = Subscription(
-                self._participant, found, PRESENCE_TYPE, qos, lambda _: None, ignore_own=True
+                self.handle, found, PRESENCE_TYPE, qos, lambda _: None, ignore_own=True
             )
         for sample in self._nodes.take_all():
             try:
@@ -184,8 +182,8 @@ class Participant:
             endpoint.close()
         for kind in self._found.values():
             kind.close()
-        binding.delete(self._waitset)
-        binding.delete(self._participant)
+        delete(self._waitset)
+        delete(self.handle)
         close_domain(self.domain_id)
 
     def __enter__(self) -> Participant:
@@ -201,7 +199,7 @@ class Participant:
 
     def _publisher(self, dds_topic: str, type_name: str, qos: Qos) -> Publisher:
         found = self._topic(dds_topic, type_name)
-        return Publisher(self._participant, found, type_name, qos, self._forget)
+        return Publisher(self.handle, found, type_name, qos, self._forget)
 
     def _topic(self, dds_topic: str, type_name: str) -> RawTopic:
         key = (dds_topic, type_name)
@@ -211,20 +209,22 @@ class Participant:
 
     def _own_topic(self, dds_topic: str, type_name: str) -> RawTopic:
         """Return a topic entity that is shared with nothing else, so that it may be filtered."""
-        try:
-            return RawTopic(self._participant, dds_topic, type_name)
-        except DDSException as problem:
-            raise DdsError(f"topic {dds_topic} of {type_name}: {problem}") from None
+        return RawTopic(self.handle, dds_topic, type_name)
 
-    def _replace(self, subscription: Subscription, condition: ReadCondition) -> None:
+    def _wait_for(self, subscription: Subscription) -> None:
+        condition = subscription.condition
+        code = loaded().dds_waitset_attach(self._waitset, condition, condition)
+        checked(code, f"{subscription.topic} cannot be waited for")
+
+    def _replace(self, subscription: Subscription, condition: int) -> None:
         """Wait for the new reader of a subscription in place of its old one."""
-        self._waitset.detach(condition)
-        self._waitset.attach(subscription.condition)
+        loaded().dds_waitset_detach(self._waitset, condition)
+        self._wait_for(subscription)
         self._announce()
 
     def _forget(self, endpoint: Publisher | Subscription) -> None:
         if isinstance(endpoint, Subscription):
-            self._waitset.detach(endpoint.condition)
+            loaded().dds_waitset_detach(self._waitset, endpoint.condition)
         if self._closed:
             return
         if isinstance(endpoint, Subscription):
@@ -237,3 +237,10 @@ class Participant:
         readers = [subscription.guid for subscription in self._subscriptions]
         writers = [publisher.guid for publisher in self._publishers]
         self._presence.write(presence(self.guid, *self._name, readers, writers))
+
+
+def _participant(domain_id: int) -> int:
+    """Make a participant of an open domain, with no socket that other interfaces reach."""
+    with policies(PARTICIPANT_USER_DATA) as qos, closed_to_other_interfaces(domain_id):
+        made = loaded().dds_create_participant(domain_id, qos, None)
+        return checked(made, f"no participant in domain {domain_id}")

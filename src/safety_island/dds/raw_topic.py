@@ -9,19 +9,23 @@ unknown type samples pass through as bytes. Both match by the name of the type a
 from __future__ import annotations
 
 import ctypes as ct
-from typing import Any
+from typing import NamedTuple
 
-from cyclonedds.core import Entity
-from cyclonedds.domain import DomainParticipant
-from cyclonedds.internal import DDS, dds_c_t
-from cyclonedds.topic import Topic
-
-from safety_island.dds.binding import ANY, RETCODE_BAD_PARAMETER, RawSample, strerror
 from safety_island.dds.errors import DdsError
-from safety_island.dds.types import Descriptor, descriptor_of, opaque_descriptor
+from safety_island.dds.library.entity import RETCODE_BAD_PARAMETER, RETCODE_ERROR, checked, strerror
+from safety_island.dds.library.layouts import (
+    ALIVE,
+    ANY,
+    DATA,
+    DISPOSED,
+    NO_WRITERS,
+    SampleInfo,
+    Vector,
+)
+from safety_island.dds.library.loading import Library, loaded
+from safety_island.dds.library.release import Release
+from safety_island.dds.types import descriptor_of, opaque_descriptor
 
-_library: Any = DDS._dll_handle
-_DATA = 2
 _NO_CONTENT = bytes(1)
 """In place of a sample where only its key counts, and it has none."""
 _BATCH = 64
@@ -29,70 +33,42 @@ _MINIMUM_WRITE = 4
 """The C layer reads a header of this many bytes without looking whether it is there."""
 
 
-class _Vector(ct.Structure):
-    """``struct iovec``."""
+class RawSample(NamedTuple):
+    """One taken sample; without ``valid`` it only tells that an instance or a writer went away."""
 
-    _fields_ = (("base", ct.c_char_p), ("length", ct.c_size_t))
+    data: bytes
+    valid: bool
+    source_timestamp_ns: int
+    publication_handle: int
+    state: int = ALIVE
+    """What became of the topic's instance by now."""
 
+    @property
+    def is_alive(self) -> bool:
+        """Whether what was said last still counts."""
+        return self.state == ALIVE
 
-def _function(name: str, result: Any, *arguments: Any, waits: bool = False) -> Any:
-    """Return a C function with a prototype of its own: cyclonedds sets others on the library.
+    @property
+    def is_disposed(self) -> bool:
+        """Whether a publisher has disposed what was said last."""
+        return self.state == DISPOSED
 
-    Other Python threads run during one that ``waits``; the others are too short for a change of
-    threads, which a busy one would answer late.
-    """
-    prototype = ct.CFUNCTYPE if waits else ct.PYFUNCTYPE
-    return prototype(result, *arguments)((name, _library))
-
-
-_entity = dds_c_t.entity
-_create_topic = _function(
-    "dds_create_topic",
-    _entity,
-    _entity,
-    ct.POINTER(Descriptor),
-    ct.c_char_p,
-    ct.c_void_p,
-    ct.c_void_p,
-)
-_take_cdr = _function(
-    "dds_takecdr",
-    ct.c_int32,
-    _entity,
-    ct.POINTER(ct.c_void_p),
-    ct.c_uint32,
-    ct.POINTER(dds_c_t.sample_info),
-    ct.c_uint32,
-)
-_sertype_of = _function("dds_get_entity_sertype", ct.c_int32, _entity, ct.POINTER(ct.c_void_p))
-_write_cdr = _function("dds_writecdr", ct.c_int32, _entity, ct.c_void_p, waits=True)
-_dispose = _function("dds_dispose", ct.c_int32, _entity, ct.c_char_p)
-_from_bytes = _function(
-    "ddsi_serdata_from_ser_iov",
-    ct.c_void_p,
-    ct.c_void_p,
-    ct.c_int,
-    ct.c_size_t,
-    ct.POINTER(_Vector),
-    ct.c_size_t,
-)
-_size = _function("ddsi_serdata_size", ct.c_uint32, ct.c_void_p)
-_to_bytes = _function(
-    "ddsi_serdata_to_ser", None, ct.c_void_p, ct.c_size_t, ct.c_size_t, ct.c_void_p
-)
-_release = _function("ddsi_serdata_unref", None, ct.c_void_p)
+    @property
+    def is_orphaned(self) -> bool:
+        """Whether none of those who published is alive any more."""
+        return self.state == NO_WRITERS
 
 
-class RawTopic(Topic[Any]):
-    """A DDS topic of a ROS type."""
-
-    def __init__(self, participant: DomainParticipant, dds_topic: str, type_name: str) -> None:
-        described, name = self.descriptor(type_name), dds_topic.encode("ascii")
-        Entity.__init__(self, _create_topic(participant._ref, described, name, None, None))
-        self.data_type: Any = None
-        self._keepalive_entities = [participant]
+class RawTopic:
+    """A DDS topic of a ROS type. Raises DdsError when the library refuses it."""
 
     descriptor = staticmethod(descriptor_of)
+
+    def __init__(self, participant: int, name: str, type_name: str) -> None:
+        self.name = name
+        described = self.descriptor(type_name)
+        made = loaded().dds_create_topic(participant, described, name.encode(), None, None)
+        self.entity = checked(made, f"topic {name} of {type_name} was refused")
 
 
 class OpaqueTopic(RawTopic):
@@ -106,19 +82,19 @@ class Room:
 
     def __init__(self) -> None:
         self.data = (ct.c_void_p * _BATCH)()
-        self.infos = (dds_c_t.sample_info * _BATCH)()
+        self.infos = (SampleInfo * _BATCH)()
 
 
 def take(reader: int, limit: int, room: Room) -> list[RawSample]:
     """Take up to ``limit`` samples, oldest first; DdsError with the library's return code."""
     found: list[RawSample] = []
-    data, infos = room.data, room.infos
+    data, infos, library = room.data, room.infos, loaded()
     while len(found) < limit:
         batch = min(_BATCH, limit - len(found))
-        count = _take_cdr(reader, data, batch, infos, ANY)
+        count = library.dds_takecdr(reader, data, batch, infos, ANY)
         if count < 0:
             raise DdsError(f"taking samples failed: {strerror(count)}")
-        found += [_sample(data[i], infos[i]) for i in range(count)]
+        found += [_sample(library, data[i], infos[i]) for i in range(count)]
         if count < batch:
             break
     return found
@@ -128,22 +104,29 @@ def write(writer: int, data: bytes) -> int:
     """Write serialized CDR (header included) and return 0 or a negative return code."""
     if len(data) < _MINIMUM_WRITE:
         return RETCODE_BAD_PARAMETER
-    data = filled(data)
+    library = loaded()
+    if library.release is Release.V0_10:
+        code: int = library.dds_writecdr(writer, library.envelope.around(filled(data)))
+        return RETCODE_BAD_PARAMETER if code == RETCODE_ERROR else code
+    return _write_as_type(library, writer, filled(data))
+
+
+def _write_as_type(library: Library, writer: int, data: bytes) -> int:
     sertype = ct.c_void_p()
-    code: int = _sertype_of(writer, sertype)
+    code: int = library.dds_get_entity_sertype(writer, sertype)
     if code < 0:
         return code
-    vector = _Vector(data, len(data))
-    serialized = _from_bytes(sertype, _DATA, 1, vector, len(data))
+    vector = Vector(data, len(data))
+    serialized = library.ddsi_serdata_from_ser_iov(sertype, DATA, 1, vector, len(data))
     if not serialized:
         return RETCODE_BAD_PARAMETER
-    code = _write_cdr(writer, serialized)
+    code = library.dds_writecdr(writer, serialized)
     return code
 
 
 def dispose(writer: int) -> int:
     """Dispose what a writer of a topic without key has sent; 0 or a negative return code."""
-    code: int = _dispose(writer, _NO_CONTENT)
+    code: int = loaded().dds_dispose(writer, _NO_CONTENT)
     return code
 
 
@@ -153,11 +136,11 @@ def filled(data: bytes) -> bytes:
     return data + bytes(4 - surplus) if surplus else data
 
 
-def _sample(data: int | None, info: Any) -> RawSample:
-    size = _size(data)
+def _sample(library: Library, data: int | None, info: SampleInfo) -> RawSample:
+    size = library.ddsi_serdata_size(data)
     memory = ct.create_string_buffer(size)
-    _to_bytes(data, 0, size, memory)
-    _release(data)
+    library.ddsi_serdata_to_ser(data, 0, size, memory)
+    library.ddsi_serdata_unref(data)
     return RawSample(
         memory.raw,
         info.valid_data,

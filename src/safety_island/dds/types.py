@@ -17,6 +17,7 @@ import ctypes as ct
 from functools import cache
 from typing import Any
 
+from safety_island.dds.library.layouts import Descriptor
 from safety_island.messages import registry
 from safety_island.messages.description import (
     Array,
@@ -58,29 +59,6 @@ class _Sequence(ct.Structure):
         ("length", ct.c_uint32),
         ("buffer", ct.c_void_p),
         ("release", ct.c_bool),
-    )
-
-
-class _Metadata(ct.Structure):
-    _fields_ = (("data", ct.c_void_p), ("size", ct.c_uint32))
-
-
-class Descriptor(ct.Structure):
-    """``dds_topic_descriptor_t`` of ddsc/dds_public_impl.h."""
-
-    _fields_ = (
-        ("size", ct.c_uint32),
-        ("alignment", ct.c_uint32),
-        ("flags", ct.c_uint32),
-        ("key_count", ct.c_uint32),
-        ("type_name", ct.c_char_p),
-        ("keys", ct.c_void_p),
-        ("operation_count", ct.c_uint32),
-        ("operations", ct.POINTER(ct.c_uint32)),
-        ("xml", ct.c_char_p),
-        ("type_information", _Metadata),
-        ("type_mapping", _Metadata),
-        ("representations", ct.c_uint32),
     )
 
 

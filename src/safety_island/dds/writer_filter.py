@@ -14,11 +14,10 @@ import ctypes as ct
 import mmap
 import platform
 from functools import cache
-from typing import Any
 
-from cyclonedds.internal import DDS, dds_c_t
-
-from safety_island.dds.errors import DdsError
+from safety_island.dds.library.entity import checked
+from safety_island.dds.library.layouts import Filter
+from safety_island.dds.library.loading import loaded
 
 CODE = {
     "x86_64": "488b064885c07406483947207503b001c348ff460831c0c3",
@@ -29,18 +28,6 @@ CODE = {
 
 _BY_SAMPLE_INFO = 3
 """``DDS_TOPIC_FILTER_SAMPLEINFO_ARG``."""
-
-
-class _Filter(ct.Structure):
-    """``struct dds_topic_filter`` of ddsc/dds_public_impl.h."""
-
-    _fields_ = (("mode", ct.c_int), ("function", ct.c_void_p), ("argument", ct.c_void_p))
-
-
-_library: Any = DDS._dll_handle
-_set_filter = ct.CFUNCTYPE(ct.c_int32, dds_c_t.entity, ct.POINTER(_Filter))(
-    ("dds_set_topic_filter_extended", _library)
-)
 
 
 class State(ct.Structure):
@@ -61,9 +48,9 @@ class WriterFilter:
         address = function_address()
         if address is None:
             return
-        code = _set_filter(topic, _Filter(_BY_SAMPLE_INFO, address, ct.addressof(self.state)))
-        if code < 0:
-            raise DdsError(f"the writers of a topic cannot be kept apart ({code})")
+        filtered = Filter(_BY_SAMPLE_INFO, address, ct.addressof(self.state))
+        code = loaded().dds_set_topic_filter_extended(topic, filtered)
+        checked(code, "the writers of a topic cannot be kept apart")
 
 
 @cache

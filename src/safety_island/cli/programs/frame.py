@@ -31,7 +31,8 @@ def run(name: str, purpose: str, body: Body) -> int:
             stop = StopFlag()
             with on_stop(stop.set):
                 start.disarm()
-                return body(arguments, DdsConfig(interface=arguments.interface), stop)
+                dds = DdsConfig(arguments.interface, library=arguments.ddsc)
+                return body(arguments, dds, stop)
     except IslandError as error:
         for line in str(error).splitlines():
             print(f"{name}: error: {line}", file=sys.stderr)
@@ -54,5 +55,6 @@ def _parser(name: str, purpose: str) -> Parser:
         metavar="NAME",
         help=f"network interface (default: {interface or 'the library chooses'})",
     )
+    options.add_library(parser)
     options.add_duration(parser, 0.0)
     return parser
