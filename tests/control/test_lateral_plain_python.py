@@ -11,7 +11,6 @@ from tests.control.test_longitudinal_plain_python import HERE, run_plain
 FILES = (
     *("lateral", "lateral_standing", "mpc", "mpc_acceptance", "filters", "steering_offset"),
     *("steering_rate_limit", "vehicle_model", "input_check", "spline", "reference_shape"),
-    "recursion",
 )
 
 

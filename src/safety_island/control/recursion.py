@@ -47,10 +47,10 @@ def solve_recursively(params, lat, u, n):
     the limit of ``cholesky``.
     """
     if is_kinematic(params):
-        recursion_kinematic.fill_feedback(lat, n)
+        is_positive = recursion_kinematic.fill_feedback(lat, n)
     else:
-        recursion_dynamic.fill_feedback(lat, n)
-    if not _has_good_pivots(lat.pivot, n):
+        is_positive = recursion_dynamic.fill_feedback(lat, n)
+    if not is_positive or not _has_good_pivots(lat.pivot, n):
         return False
     if is_kinematic(params):
         recursion_kinematic.roll_out(lat, u, n)
@@ -61,10 +61,11 @@ def solve_recursively(params, lat, u, n):
 
 @kernel
 def _has_good_pivots(pivot, n):
+    """Whether the pivots, all positive, are not too large, and their product is not too small."""
     log_determinant = 0.0
     product = 1.0
     for j in range(n):
-        if not 0.0 < pivot[j] <= _LARGEST:
+        if pivot[j] > _LARGEST:
             return False
         product *= pivot[j]
         if j % 2 == 1 or j == n - 1:

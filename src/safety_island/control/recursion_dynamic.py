@@ -15,7 +15,10 @@ _Z = 6
 
 @kernel
 def fill_feedback(lat, n):
-    """Fill ``pivot`` = h_uu and ``feedback`` = (h_u, h_ua, h_ub, h_ux) / h_uu of every step."""
+    """Fill ``pivot`` = h_uu and ``feedback`` = (h_u, h_ua, h_ub, h_ux) / h_uu of every step.
+
+    Returns False at a pivot that is not positive.
+    """
     cost, slope = lat.value, lat.value_slope
     for r in range(_Z):
         slope[r] = 0.0
@@ -35,8 +38,11 @@ def fill_feedback(lat, n):
         for r in range(_X):
             pivot += b[r] * (row[r] + cost[r, _U])
             linear += b[r] * slope[r]
+        if not pivot > 0.0:
+            return False
         _step_back(lat, j)
         _eliminate(lat, j, pivot, linear)
+    return True
 
 
 @kernel

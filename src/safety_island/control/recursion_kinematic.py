@@ -12,7 +12,10 @@ from safety_island.control.vehicle_model import advance_kinematic
 
 @kernel
 def fill_feedback(lat, n):
-    """Fill ``pivot`` = h_uu and ``feedback`` = (h_u, h_ua, h_ub, h_ux) / h_uu of every step."""
+    """Fill ``pivot`` = h_uu and ``feedback`` = (h_u, h_ua, h_ub, h_ux) / h_uu of every step.
+
+    Returns False at a pivot that is not positive.
+    """
     # P: the upper triangle of P_xx; P_xu, P_xv; P_uu, P_uv, P_vv; and p
     p00, p01, p02, p11, p12, p22 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     u0, u1, u2, v0, v1, v2 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
@@ -40,6 +43,8 @@ def fill_feedback(lat, n):
         hb = lat.r2[j]
         h2 = b * h0 + c * h1 + d * h2
         h1 = a * h0 + h1
+        if not pivot > 0.0:
+            return False
         inverse = 1.0 / pivot
         ku, ka, kb = hu * inverse, ha * inverse, hb * inverse
         k0, k1, k2 = h0 * inverse, h1 * inverse, h2 * inverse
@@ -68,6 +73,7 @@ def fill_feedback(lat, n):
         uu, uv, vv = vv - ha * ka, -ha * kb, -hb * kb
         g0, g1, g2 = g0 - h0 * ku, f1 - h1 * ku, f2 - h2 * ku
         gu, gv = gv - ha * ku, -hb * ku
+    return True
 
 
 @kernel
