@@ -100,7 +100,7 @@ class Rig:
     def lat(self) -> Any:
         """The state record of the lateral controller, its reference worked out to the end."""
         lat = self.follower._lateral[0]
-        ensure(lat, lat.ref_n)
+        ensure(lat, 0, lat.ref_n)
         return lat
 
     @property

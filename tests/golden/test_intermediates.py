@@ -44,7 +44,7 @@ def ours(name: str) -> tuple[Any, Any]:
         if tick == int(last):
             break
     lat = follower._lateral[0]
-    ensure(lat, lat.ref_n)
+    ensure(lat, 0, lat.ref_n)
     return lat, condensed(follower._params, follower._lateral, follower._qp)
 
 

@@ -47,12 +47,19 @@ SOURCE_COLUMNS = [
     ("mz", "f8", (_SOURCE,)),
     ("myaw", "f8", (_SOURCE,)),
     ("gain", "f8", (_SOURCE,)),  # elimination factors of the tridiagonal system
+    (
+        "bulge",
+        "f8",
+    ),  # no place of the curve is further than this from both ends of its interval [m]
 ]
 
 REFERENCE_COLUMNS = [
     ("ref_n", "i8"),  # points of the reference, without closing duplicates; 0: none yet
-    ("ready", "i8"),  # how many of them, the first closing duplicate counted, are worked out
+    ("first", "i8"),  # those from here on, and
+    ("ready", "i8"),  # before here are worked out, see ``reference_positions``
     ("cursor", "i8"),  # the interval of the source in which that ended
+    ("near_interval", "i8"),  # the interval in which the search for the ego is
+    ("is_on_splines", "?"),  # they lie on the splines of the source, so the rest can be worked out
     ("rs", "f8", (_LONGEST,)),  # arc length at which each stands [m]
     ("rx", "f8", (_LONGEST,)),  # position [m]
     ("ry", "f8", (_LONGEST,)),

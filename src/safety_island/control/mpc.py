@@ -18,8 +18,9 @@ from safety_island.control.prediction import (
     sample_horizon,
     step_at,
 )
-from safety_island.control.reference_positions import ensure
 from safety_island.control.reference_shape import (
+    ensure_curvature,
+    ensure_yaw,
     nearest_on_reference,
     segment_on_reference,
     yaw_at,
@@ -59,7 +60,7 @@ def locate(params, inputs, lat, trace):
     )
     lat.segment = segment_on_reference(lat, lat.nearest, inputs.x, inputs.y)
     a = lat.segment
-    ensure(lat, a + 2)  # the yaw at the segment's end reads the point behind
+    ensure_yaw(lat, a, a + 1)
     dx = lat.rx[a + 1] - lat.rx[a]
     dy = lat.ry[a + 1] - lat.ry[a]
     length_squared = dx * dx + dy * dy
@@ -178,7 +179,7 @@ def prepare_mpc(params, inputs, lat, qp, trace, now):
     else:
         fill_window(params, lat, inputs.vx, ratio, delay, horizon)
         reach = max(params.curvature_smoothing_num_traj, params.curvature_smoothing_num_ref_steer)
-        ensure(lat, max(lat.segment + lat.window, reach) + reach)
+        ensure_curvature(lat, lat.segment, lat.segment + lat.window, reach)
     trace.nearest_time = lat.nearest_time
     trace.prediction_dt = lat.prediction_dt
     _compensate_delay(params, lat)
