@@ -6,7 +6,7 @@ Yaw and curvature read points around the one that they are asked for, which must
 
 import math
 
-from safety_island.control.geometry import normalize_angle
+from safety_island.control.geometry import clear_turn, cosine_of_limit, normalize_angle
 from safety_island.control.kernel import kernel
 from safety_island.control.reference_positions import ensure
 from safety_island.control.spline import interval_from
@@ -27,9 +27,15 @@ def _is_short(lat, i, j):
 
 
 @kernel
+def _has_close_neighbours(lat, i):
+    """Whether point ``i`` and those on either side are too close together to give a direction."""
+    return _is_short(lat, i - 1, i + 1) or _is_short(lat, i - 1, i) or _is_short(lat, i, i + 1)
+
+
+@kernel
 def starts_close(lat):
     """Whether the first points of a reference of three or more are too close together."""
-    return _is_short(lat, 0, 1) or _is_short(lat, 1, 2) or _is_short(lat, 0, 2)
+    return _has_close_neighbours(lat, 1)
 
 
 @kernel
@@ -50,8 +56,7 @@ def _yaw_one_sided(lat, i):
     i = min(max(i, 1), last - 1)
     while i > 0:
         ensure(lat, i - 1, i + 1)
-        close = _is_short(lat, i - 1, i + 1) or _is_short(lat, i - 1, i) or _is_short(lat, i, i + 1)
-        if not close:
+        if not _has_close_neighbours(lat, i):
             return _direction(lat, i - 1, i + 1)
         i -= 1
     return lat.short_yaw[0]
@@ -193,10 +198,27 @@ def _distance(lat, j, x, y):
 
 
 @kernel
+def _plain_direction(lat, i):
+    """Where the vehicle faces at point ``i`` by central differences; (0, 0) where another rule is.
+
+    What ``yaw_at`` takes the angle of, at most points.
+    """
+    if lat.is_timed or i < 1 or i > lat.ref_n - 2:
+        return 0.0, 0.0
+    if lat.one_sided_ends and _has_close_neighbours(lat, i):
+        return 0.0, 0.0
+    sign = 1.0 if lat.is_forward else -1.0
+    return sign * (lat.rx[i + 1] - lat.rx[i - 1]), sign * (lat.ry[i + 1] - lat.ry[i - 1])
+
+
+@kernel
 def _nearest_within(lat, x, y, yaw, dist_limit, yaw_limit):
     """Nearest point of the first run of points within both limits; -1 when there is none."""
     best = -1
     best_squared = math.inf
+    has_yaw_limit = yaw_limit < math.inf
+    cos_yaw, sin_yaw = math.cos(yaw), math.sin(yaw)
+    cos_limit = cosine_of_limit(yaw_limit) if has_yaw_limit else 0.0
     i = _next_near(lat, 0, x, y, dist_limit)
     while i <= lat.ref_n:
         ensure_yaw(lat, i, i)
@@ -204,8 +226,11 @@ def _nearest_within(lat, x, y, yaw, dist_limit, yaw_limit):
         dy = lat.ry[i] - y
         squared = dx * dx + dy * dy
         inside = squared <= dist_limit * dist_limit
-        if inside and yaw_limit < math.inf:
-            inside = abs(normalize_angle(yaw_at(lat, i) - yaw)) <= yaw_limit
+        if inside and has_yaw_limit:
+            dx, dy = _plain_direction(lat, i)
+            clear = clear_turn(dx, dy, cos_yaw, sin_yaw, cos_limit)
+            turn = 0.0 if clear != 0 else normalize_angle(yaw_at(lat, i) - yaw)
+            inside = clear > 0 or (clear == 0 and abs(turn) <= yaw_limit)
         if inside:
             if squared < best_squared:
                 best_squared = squared
