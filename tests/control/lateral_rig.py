@@ -14,6 +14,7 @@ from safety_island.control.follower import TrajectoryFollower
 from safety_island.control.records import POINT, Records
 from safety_island.control.reference_positions import ensure
 from safety_island.control.status import Mode, MpcStatus, Refusal
+from tests.control.condensed import condensed
 from tests.golden.harness import firmware
 
 PERIOD = 0.15
@@ -99,13 +100,14 @@ class Rig:
     def lat(self) -> Any:
         """The state record of the lateral controller, its reference worked out to the end."""
         lat = self.follower._lateral[0]
-        ensure(lat, lat.ref_n)
+        ensure(lat, 0, lat.ref_n)
         return lat
 
     @property
     def qp(self) -> Any:
-        """The quadratic programme of the last tick."""
-        return self.follower._qp[0]
+        """The quadratic programme of the last tick, condensed."""
+        follower = self.follower
+        return condensed(follower._params, follower._lateral, follower._qp)
 
     @property
     def angle(self) -> float:

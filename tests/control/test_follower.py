@@ -68,7 +68,7 @@ def test_a_path_of_two_points_is_not_enough_until_there_was_a_longer_one() -> No
     assert follower.step(START + PERIOD)
     assert follower.trace[0].stop_dist == pytest.approx(50.0)
     lat = follower._lateral[0]
-    ensure(lat, lat.ref_n)
+    ensure(lat, 0, lat.ref_n)
     assert lat.rx[: lat.ref_n].max() < 20.0
 
 

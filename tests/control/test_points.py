@@ -8,6 +8,7 @@ import math
 import numpy as np
 import pytest
 
+from safety_island.control.geometry import clear_turn, cosine_of_limit, normalize_angle
 from safety_island.control.points import nearest_index, offset_along, segment_of
 from safety_island.control.records import POINT, Records
 
@@ -70,3 +71,21 @@ def test_the_offset_is_signed_and_zero_where_the_segment_has_no_length() -> None
     assert offset_along(path, 0, -4.0, 3.0) == 0.0
     assert offset_along(path, 1, 9.0, 9.0) == 0.0
     assert offset_along(points([(1, 2), (4, 6)]), 0, 4.0, 6.0) == 5.0
+
+
+@pytest.mark.parametrize("limit", [0.0, 1e-6, 0.3, 1.046, math.pi / 2, 3.0, math.pi, 4.0])
+def test_the_cosine_says_what_the_angles_say_where_it_says_anything(limit: float) -> None:
+    """Of directions at random, and at the limit; there, and for no direction, it leaves it open."""
+    rng = np.random.default_rng(3)
+    turns = np.concatenate([rng.uniform(-math.pi, math.pi, 300), [limit, -limit, 0.0, math.pi]])
+    open_cases = 0
+    for turn in turns:
+        yaw, length = rng.uniform(-math.pi, math.pi), 10.0 ** rng.uniform(-6, 6)
+        x, y = length * math.cos(yaw + turn), length * math.sin(yaw + turn)
+        clear = clear_turn(x, y, math.cos(yaw), math.sin(yaw), cosine_of_limit(limit))
+        inside = abs(normalize_angle(math.atan2(y, x) - yaw)) <= limit
+        assert clear == 0 or (clear > 0) == inside
+        open_cases += clear == 0
+    assert open_cases <= 4
+    assert clear_turn(0.0, 0.0, 1.0, 0.0, cosine_of_limit(limit)) == 0
+    assert clear_turn(math.nan, 0.0, 1.0, 0.0, cosine_of_limit(limit)) == 0

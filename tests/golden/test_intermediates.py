@@ -18,6 +18,7 @@ import pytest
 
 from safety_island.control.follower import TrajectoryFollower
 from safety_island.control.reference_positions import ensure
+from tests.control.condensed import condensed
 from tests.golden.harness import parameters_of, played, recorded
 
 DUMPS = Path(__file__).parent / "dumps"
@@ -43,8 +44,8 @@ def ours(name: str) -> tuple[Any, Any]:
         if tick == int(last):
             break
     lat = follower._lateral[0]
-    ensure(lat, lat.ref_n)
-    return lat, follower._qp[0]
+    ensure(lat, 0, lat.ref_n)
+    return lat, condensed(follower._params, follower._lateral, follower._qp)
 
 
 def close(found: Any, recorded: Any, scale: float = 1.0) -> None:

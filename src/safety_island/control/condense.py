@@ -1,59 +1,30 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The condensed quadratic programme of the MPC: H and f from the models and weights.
+"""The condensed quadratic programme of the MPC: H and f from the models and the cost.
 
 The firmware multiplies dense matrices. Here the structure does the work: with the cost to go
 ``P_j`` (a backward recursion of small matrices) and the response ``Phi_jk B_k`` of state j to input
 k, ``H[j, k] = B_j' P_j (Phi_jk B_k)`` for k <= j, which is O(N^2) instead of O(N^3) and equal to
-rounding.
+rounding. f is the gradient where every input is zero.
 """
 
 from safety_island.control import condense_dynamic, condense_kinematic
+from safety_island.control.gradient import fill_gradient
 from safety_island.control.vehicle_model import is_kinematic
 from safety_island.kernel.kernel import kernel
-
-_STATES = 4
 
 _LARGEST = 1e300
 """No sum over a problem whose entries are within this overflows."""
 
 
 @kernel
-def advance(a, b, w, u, x, out):
-    """out = a x + b u + w."""
-    for r in range(_STATES):
-        total = b[r] * u + w[r]
-        for c in range(_STATES):
-            total += a[r, c] * x[c]
-        out[r] = total
-
-
-@kernel
-def _roll_out(lat, n):
-    """Fill the response of every step without input."""
-    advance(lat.A[0], lat.B[0], lat.W[0], 0.0, lat.x0_delayed, lat.free[0])
-    for i in range(1, n):
-        advance(lat.A[i], lat.B[i], lat.W[i], 0.0, lat.free[i - 1], lat.free[i])
-
-
-@kernel
-def _add_input_weights(lat, hessian, f, n):
-    """Add R1 and R2 to H and the feed-forward's part to f; mirror H."""
+def _add_input_weights(lat, hessian, n):
+    """Add the three diagonals of the input weights to H; mirror H."""
     for i in range(n):
         hessian[i, i] += lat.r0[i]
-        pull = lat.r0[i] * lat.u_ref[i]
-        if i + 1 < n:
-            hessian[i + 1, i] += lat.r1[i] - lat.jerk[i]
-            hessian[i, i] += lat.jerk[i]
-            hessian[i + 1, i + 1] += lat.jerk[i]
-            pull += lat.r1[i] * lat.u_ref[i + 1]
-        if i + 2 < n:
-            hessian[i + 2, i] += lat.r2[i]
-            pull += lat.r2[i] * lat.u_ref[i + 2]
-        if i > 0:
-            pull += lat.r1[i - 1] * lat.u_ref[i - 1]
-        if i > 1:
-            pull += lat.r2[i - 2] * lat.u_ref[i - 2]
-        f[i] -= pull
+    for i in range(1, n):
+        hessian[i, i - 1] += lat.r1[i]
+    for i in range(2, n):
+        hessian[i, i - 2] += lat.r2[i]
     for i in range(n):
         for k in range(i):
             hessian[k, i] = hessian[i, k]
@@ -72,13 +43,19 @@ def is_finite_problem(hessian, f, n):
 
 
 @kernel
-def condense(params, lat, hessian, f, horizon):
-    """Fill H and f of ``min 1/2 u'Hu + f'u`` over the steering inputs of the horizon."""
-    _roll_out(lat, horizon)
+def condense(params, lat, qp, n):
+    """Fill H and f of ``min 1/2 u'Hu + f'u`` over the n inputs of the horizon; u becomes zero.
+
+    Returns whether the problem is finite.
+    """
+    for i in range(n):
+        qp.u[i] = 0.0
+    fill_gradient(params, lat, qp.u, n, qp.f)
     if is_kinematic(params):
-        condense_kinematic.cost_to_go(lat, f, horizon)
-        condense_kinematic.fill_hessian(lat, hessian, horizon)
+        condense_kinematic.cost_to_go(lat, n)
+        condense_kinematic.fill_hessian(lat, qp.H, n)
     else:
-        condense_dynamic.cost_to_go(lat, f, horizon)
-        condense_dynamic.fill_hessian(lat, hessian, horizon)
-    _add_input_weights(lat, hessian, f, horizon)
+        condense_dynamic.cost_to_go(lat, n)
+        condense_dynamic.fill_hessian(lat, qp.H, n)
+    _add_input_weights(lat, qp.H, n)
+    return is_finite_problem(qp.H, qp.f, n)

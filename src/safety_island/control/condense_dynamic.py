@@ -10,40 +10,24 @@ _STATES = 4
 
 
 @kernel
-def cost_to_go(lat, f, n):
-    """Backward recursion: row[j] = B_j' P_j for H, and the free response's part of f."""
+def cost_to_go(lat, n):
+    """Backward recursion: row[j] = B_j' P_j."""
     cost = lat.cost
     following = lat.cost_next
-    g0 = 0.0
-    g1 = 0.0
-    g2 = 0.0
-    g3 = 0.0
     for r in range(_STATES):
         for c in range(_STATES):
             cost[r, c] = 0.0
     for j in range(n - 1, -1, -1):
         if j < n - 1:
-            a = lat.A[j + 1]
-            _congruence(a, cost, following)
-            h0 = a[0, 0] * g0 + a[1, 0] * g1 + a[2, 0] * g2 + a[3, 0] * g3
-            h1 = a[0, 1] * g0 + a[1, 1] * g1 + a[2, 1] * g2 + a[3, 1] * g3
-            h2 = a[0, 2] * g0 + a[1, 2] * g1 + a[2, 2] * g2 + a[3, 2] * g3
-            h3 = a[0, 3] * g0 + a[1, 3] * g1 + a[2, 3] * g2 + a[3, 3] * g3
-            g0 = h0
-            g1 = h1
-            g2 = h2
-            g3 = h3
+            _congruence(lat.A[j + 1], cost, following)
         cost[0, 0] += lat.q_lat[j]
         cost[2, 2] += lat.q_yaw[j]
-        g0 += lat.q_lat[j] * lat.free[j, 0]
-        g2 += lat.q_yaw[j] * lat.free[j, 2]
         b = lat.B[j]
         for c in range(_STATES):
             row = 0.0
             for r in range(_STATES):
                 row += b[r] * cost[r, c]
             lat.row[j, c] = row
-        f[j] = b[0] * g0 + b[1] * g1 + b[2] * g2 + b[3] * g3
 
 
 @kernel

@@ -10,12 +10,11 @@ from safety_island.kernel.kernel import kernel
 
 
 @kernel
-def cost_to_go(lat, f, n):
-    """Backward recursion: row[j] = B_j' P_j for H, and the free response's part of f."""
-    # the upper triangle of P_j and the gradient of the free response, held in locals: each step
-    # waits for the one behind it, and memory would take its time
+def cost_to_go(lat, n):
+    """Backward recursion: row[j] = B_j' P_j."""
+    # the upper triangle of P_j, held in locals: each step waits for the one behind it, and memory
+    # would take its time
     p00, p01, p02, p11, p12, p22 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    g0, g1, g2 = 0.0, 0.0, 0.0
     for j in range(n - 1, -1, -1):
         if j < n - 1:
             model = lat.A[j + 1]
@@ -30,17 +29,12 @@ def cost_to_go(lat, f, n):
             p11 = a * w01 + w11
             p12 = a * w02 + w12
             p22 = b * w02 + c * w12 + d * w22
-            g2 = b * g0 + c * g1 + d * g2
-            g1 = a * g0 + g1
         p00 += lat.q_lat[j]
         p11 += lat.q_yaw[j]
-        g0 += lat.q_lat[j] * lat.free[j, 0]
-        g1 += lat.q_yaw[j] * lat.free[j, 1]
         b0, b1, b2 = lat.B[j, 0], lat.B[j, 1], lat.B[j, 2]
         lat.row[j, 0] = b0 * p00 + b1 * p01 + b2 * p02
         lat.row[j, 1] = b0 * p01 + b1 * p11 + b2 * p12
         lat.row[j, 2] = b0 * p02 + b1 * p12 + b2 * p22
-        f[j] = b0 * g0 + b1 * g1 + b2 * g2
 
 
 @kernel

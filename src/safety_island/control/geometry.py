@@ -7,6 +7,9 @@ import numpy as np
 
 from safety_island.kernel.kernel import kernel
 
+_CLEAR = 1e-9
+"""Two cosines further apart than this differ by more than rounding."""
+
 
 @kernel
 def normalize_angle(angle):
@@ -15,6 +18,25 @@ def normalize_angle(angle):
     if wrapped >= math.pi or wrapped < -math.pi:
         wrapped -= math.copysign(2.0 * math.pi, wrapped)
     return wrapped
+
+
+@kernel
+def cosine_of_limit(limit):
+    """Cosine of a limit [rad] for ``clear_turn``; below every cosine from half a turn on."""
+    return math.cos(limit) if limit < math.pi else -2.0
+
+
+@kernel
+def clear_turn(x, y, cos_yaw, sin_yaw, cos_limit):
+    """Whether the direction (x, y) is turned from a yaw by less than a limit (1), or by more (-1).
+
+    0 where rounding could decide, and for no direction: then the angles themselves must be asked.
+    """
+    length = math.sqrt(x * x + y * y)
+    apart = x * cos_yaw + y * sin_yaw - cos_limit * length
+    if apart > _CLEAR * length:
+        return 1
+    return -1 if apart < -_CLEAR * length else 0
 
 
 @kernel
@@ -28,9 +50,16 @@ def clip(value, low, high):
 
 
 @kernel
+def heading_of(qx, qy, qz, qw):
+    """Body x of a quaternion in the plane, without normalising it (as the firmware does)."""
+    return 1.0 - 2.0 * (qy * qy + qz * qz), 2.0 * (qw * qz + qx * qy)
+
+
+@kernel
 def yaw_of(qx, qy, qz, qw):
-    """Yaw [rad] of a quaternion, without normalising it (as the firmware does)."""
-    return math.atan2(2.0 * (qw * qz + qx * qy), 1.0 - 2.0 * (qy * qy + qz * qz))
+    """Yaw [rad] of a quaternion, by ``heading_of``."""
+    x, y = heading_of(qx, qy, qz, qw)
+    return math.atan2(y, x)
 
 
 @kernel

@@ -8,6 +8,8 @@ is checked here and, where its points have flaws that its path has not, cleaned 
 
 import math
 
+import numpy as np
+
 from safety_island.control.limits import EXTENSION_POINTS, MAX_POINTS, MAX_REFERENCE
 from safety_island.control.points import advance, time_of
 from safety_island.control.records import PARAMS, POINT
@@ -48,6 +50,7 @@ _BAD_TIMES = int(Refusal.BAD_TIMES)
 _TEMPORAL = int(ReferenceMode.TEMPORAL)
 
 _LARGEST_PART = 2.0  # of a quaternion; the square of a larger one could overflow
+_LARGEST_SUM = 2.5  # of the magnitudes of its parts; 2 at most for a unit
 _FEWEST_POINTS = 2
 FEWEST_POINTS = 3
 """Points with which both controllers run; two are enough for the longitudinal one."""
@@ -76,7 +79,37 @@ def leans(dx, dy, way, side):
 
 @kernel
 def _check_point(point):
-    """Refusal of one trajectory point, the first reason found; its orientation becomes a unit."""
+    """Refusal of one trajectory point, the first reason found; its orientation becomes a unit.
+
+    Where sums of magnitudes keep the bounds, every number does, and none is NaN. That is nearly
+    every point; what is wrong with another one is looked for value by value.
+    """
+    place = abs(point.x) + abs(point.y) + abs(point.z)
+    speed = np.float64(abs(point.v)) + abs(point.v_lat)  # a sum in single precision may overflow
+    turn = np.float64(abs(point.heading_rate)) + abs(point.front_wheel) + abs(point.rear_wheel)
+    parts = abs(point.qx) + abs(point.qy) + abs(point.qz) + abs(point.qw)
+    if (
+        place <= MAX_POSITION
+        and speed <= MAX_SPEED
+        and turn <= MAX_TURN
+        and abs(point.acc) <= MAX_ACCELERATION
+        and parts <= _LARGEST_SUM
+        and abs(_square_norm(point) - 1.0) <= UNIT_TOLERANCE
+    ):
+        return _ACCEPTED
+    return _check_values(point)
+
+
+@kernel
+def _square_norm(point):
+    """Square of the norm of an orientation."""
+    square = point.qx * point.qx + point.qy * point.qy
+    return square + (point.qz * point.qz + point.qw * point.qw)
+
+
+@kernel
+def _check_values(point):
+    """The same, value by value."""
     place = max(abs(point.x), abs(point.y), abs(point.z))
     speed = max(abs(point.v), abs(point.v_lat))
     turn = max(abs(point.heading_rate), abs(point.front_wheel), abs(point.rear_wheel))
@@ -89,8 +122,7 @@ def _check_point(point):
     if not in_range or abs(point.acc) > MAX_ACCELERATION:
         return _OUT_OF_RANGE
     if max(abs(point.qx), abs(point.qy), abs(point.qz), abs(point.qw)) <= _LARGEST_PART:
-        square = point.qx * point.qx + point.qy * point.qy
-        square += point.qz * point.qz + point.qw * point.qw
+        square = _square_norm(point)
         if MIN_SQUARE_NORM <= square <= MAX_SQUARE_NORM:
             if abs(square - 1.0) > UNIT_TOLERANCE:
                 _normalise(point, square)

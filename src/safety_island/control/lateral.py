@@ -3,6 +3,7 @@
 
 import numpy as np
 
+from safety_island.control.condense import condense
 from safety_island.control.convergence import (
     has_shape_changed,
     is_mpc_converged,
@@ -24,6 +25,7 @@ from safety_island.control.steering_offset import follow_offset, update_offset
 from safety_island.kernel.kernel import entry, kernel
 
 _SOLVED = int(MpcStatus.SOLVED)
+_INVALID_MATRIX = int(MpcStatus.INVALID_MATRIX)
 _NO_REFERENCE = int(MpcStatus.NO_REFERENCE)
 _AUTONOMOUS = int(Mode.AUTONOMOUS)
 _TEMPORAL = int(ReferenceMode.TEMPORAL)
@@ -66,7 +68,7 @@ def _measure(params, inputs, lat):
 
 @kernel
 def _prepare(params, points, inputs, lat, qp, trace, now):
-    """Take this tick's inputs and build the quadratic programme."""
+    """Take this tick's inputs and set up the problem."""
     _set_trajectory(params, points, inputs, lat)
     trace.lateral_ready = lat.ref_n > 0
     if lat.ref_n == 0:
@@ -200,7 +202,7 @@ def lateral_step(params, points, inputs, state, qp, command, trace, now):
     lat = state[0]
     status = _prepare(params[0], points, inputs[0], lat, qp[0], trace[0], now)
     if status == _SOLVED:
-        status = solve(params[0], qp[0])
+        status = solve(params[0], lat, qp[0])
     if status != _NO_REFERENCE:
         _finish(params[0], points, inputs[0], lat, qp[0], command[0], trace[0], now, status)
     return status
@@ -208,8 +210,15 @@ def lateral_step(params, points, inputs, state, qp, command, trace, now):
 
 @entry(PARAMS, POINT, INPUTS, LATERAL_STATE, QP, TRACE, float, on_demand=True)
 def lateral_prepare(params, points, inputs, state, qp, trace, now):
-    """The first part of ``lateral_step``, for a solver that is no kernel."""
-    return _prepare(params[0], points, inputs[0], state[0], qp[0], trace[0], now)
+    """The first part of ``lateral_step``, and the condensed problem for a solver that is no kernel.
+
+    SOLVED means that it is ready to be solved.
+    """
+    status = _prepare(params[0], points, inputs[0], state[0], qp[0], trace[0], now)
+    if status != _SOLVED:
+        return status
+    is_finite = condense(params[0], state[0], qp[0], params[0].mpc_prediction_horizon)
+    return _SOLVED if is_finite else _INVALID_MATRIX
 
 
 @entry(PARAMS, POINT, INPUTS, LATERAL_STATE, QP, COMMAND, TRACE, float, int, on_demand=True)

@@ -76,7 +76,7 @@ class LateralParams:
     )
     qp_solver_type: str = parameter(
         "",
-        "Solver: Cholesky without limits, OSQP (optional extra), or exact with all limits.",
+        "Solver: exact without limits, OSQP (optional extra), or exact with all limits.",
         choices=("unconstraint_fast", "osqp", "daqp"),
     )
     input_delay: float = parameter(

@@ -47,12 +47,19 @@ SOURCE_COLUMNS = [
     ("mz", "f8", (_SOURCE,)),
     ("myaw", "f8", (_SOURCE,)),
     ("gain", "f8", (_SOURCE,)),  # elimination factors of the tridiagonal system
+    (
+        "bulge",
+        "f8",
+    ),  # no place of the curve is further than this from both ends of its interval [m]
 ]
 
 REFERENCE_COLUMNS = [
     ("ref_n", "i8"),  # points of the reference, without closing duplicates; 0: none yet
-    ("ready", "i8"),  # how many of them, the first closing duplicate counted, are worked out
+    ("first", "i8"),  # those from here on, and
+    ("ready", "i8"),  # before here are worked out, see ``reference_positions``
     ("cursor", "i8"),  # the interval of the source in which that ended
+    ("near_interval", "i8"),  # the interval in which the search for the ego is
+    ("is_on_splines", "?"),  # they lie on the splines of the source, so the rest can be worked out
     ("rs", "f8", (_LONGEST,)),  # arc length at which each stands [m]
     ("rx", "f8", (_LONGEST,)),  # position [m]
     ("ry", "f8", (_LONGEST,)),
@@ -87,15 +94,24 @@ PREDICTION_COLUMNS = [
     ("W", "f8", (MAX_HORIZON, _STATES)),
     ("Ac", "f8", (_STATES, 3 * _STATES)),  # work memory of the bilinear transform
     ("u_ref", "f8", (MAX_HORIZON,)),  # feed-forward steering [rad]
-    ("q_lat", "f8", (MAX_HORIZON,)),  # weights
+    ("q_lat", "f8", (MAX_HORIZON,)),  # the cost, see ``cost``: weights on the errors
     ("q_yaw", "f8", (MAX_HORIZON,)),
-    ("r0", "f8", (MAX_HORIZON,)),  # R1: diagonal and two side diagonals
-    ("r1", "f8", (MAX_HORIZON,)),
-    ("r2", "f8", (MAX_HORIZON,)),
-    ("jerk", "f8", (MAX_HORIZON,)),  # R2: weight between steps i and i + 1
+    ("r0", "f8", (MAX_HORIZON,)),  # on the input of step i,
+    ("r1", "f8", (MAX_HORIZON,)),  # on it times the one before,
+    ("r2", "f8", (MAX_HORIZON,)),  # on it times the second before
+    ("pull", "f8", (MAX_HORIZON,)),
+    ("jerk", "f8", (MAX_HORIZON,)),  # work memory: weight between steps i and i + 1
     ("x0", "f8", (_STATES,)),
     ("x0_delayed", "f8", (_STATES,)),
-    ("free", "f8", (MAX_HORIZON, _STATES)),  # response without input
+    ("x_next", "f8", (_STATES,)),  # work memory of one step of the model
+    ("lateral", "f8", (MAX_HORIZON,)),  # errors after each step under the inputs of ``gradient``
+    ("heading", "f8", (MAX_HORIZON,)),
+    ("pivot", "f8", (MAX_HORIZON,)),  # of the recursion
+    ("feedback", "f8", (MAX_HORIZON, 3 + _STATES)),  # constant, by the last two inputs, by states
+    ("value", "f8", (_STATES + 2, _STATES + 2)),  # cost to go by the state and the last two inputs
+    ("value_slope", "f8", (_STATES + 2,)),
+    ("value_row", "f8", (_STATES + 2,)),
+    ("value_work", "f8", (_STATES + 2, _STATES)),
     ("cost", "f8", (_STATES, _STATES)),  # cost to go of the condensing recursion
     ("cost_next", "f8", (_STATES, _STATES)),
     ("row", "f8", (MAX_HORIZON, _STATES)),

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 
-from safety_island.control.condense import advance, condense, is_finite_problem
+from safety_island.control.cost import fill_cost
 from safety_island.control.filters import butterworth
 from safety_island.control.geometry import clip, normalize_angle, yaw_of
 from safety_island.control.horizon_models import build_models
@@ -17,8 +17,9 @@ from safety_island.control.prediction import (
     sample_horizon,
     step_at,
 )
-from safety_island.control.reference_positions import ensure
 from safety_island.control.reference_shape import (
+    ensure_curvature,
+    ensure_yaw,
     nearest_on_reference,
     segment_on_reference,
     yaw_at,
@@ -31,14 +32,13 @@ from safety_island.control.reference_temporal import (
 from safety_island.control.status import MpcStatus, VehicleModel
 from safety_island.control.steering_predictor import predict_steering, store_command
 from safety_island.control.steering_rate_limit import fill_bounds
-from safety_island.control.vehicle_model import discretize
+from safety_island.control.vehicle_model import advance, discretize
 from safety_island.kernel.kernel import kernel
 
 _SOLVED = int(MpcStatus.SOLVED)
 _NO_REFERENCE = int(MpcStatus.NO_REFERENCE)
 _TOO_FAR = int(MpcStatus.TOO_FAR)
 _YAW_ERROR = int(MpcStatus.YAW_ERROR_TOO_LARGE)
-_INVALID_MATRIX = int(MpcStatus.INVALID_MATRIX)
 _KINEMATICS = int(VehicleModel.KINEMATICS)
 _DYNAMICS = int(VehicleModel.DYNAMICS)
 
@@ -60,7 +60,7 @@ def locate(params, inputs, lat, trace):
     )
     lat.segment = segment_on_reference(lat, lat.nearest, inputs.x, inputs.y)
     a = lat.segment
-    ensure(lat, a + 2)  # the yaw at the segment's end reads the point behind
+    ensure_yaw(lat, a, a + 1)
     dx = lat.rx[a + 1] - lat.rx[a]
     dy = lat.ry[a + 1] - lat.ry[a]
     length_squared = dx * dx + dy * dy
@@ -152,14 +152,14 @@ def _compensate_delay(params, lat):
         v = between(lat.wv[w], lat.wv[w + 1], part)
         k = sign * curvature_between(lat, w, part, params.curvature_smoothing_num_traj)
         discretize(params, v, k, params.ctrl_period, lat.Ac, lat.A[0], lat.B[0], lat.W[0])
-        advance(lat.A[0], lat.B[0], lat.W[0], lat.delay[i], lat.x0_delayed, lat.free[0])
+        advance(lat.A[0], lat.B[0], lat.W[0], lat.delay[i], lat.x0_delayed, lat.x_next)
         for r in range(4):
-            lat.x0_delayed[r] = lat.free[0, r]
+            lat.x0_delayed[r] = lat.x_next[r]
 
 
 @kernel
 def prepare_mpc(params, inputs, lat, qp, trace, now):
-    """Build this tick's quadratic programme; SOLVED here means that it is ready to be solved."""
+    """Set up this tick's problem: models, cost, bounds; SOLVED: it is ready to be solved."""
     lat.prediction_dt = 0.0
     trace.predicted_steer = predict_steering(lat, now, params.vehicle_model_steer_tau)
     if lat.ref_n == 0:
@@ -179,15 +179,15 @@ def prepare_mpc(params, inputs, lat, qp, trace, now):
     else:
         fill_window(params, lat, inputs.vx, ratio, delay, horizon)
         reach = max(params.curvature_smoothing_num_traj, params.curvature_smoothing_num_ref_steer)
-        ensure(lat, max(lat.segment + lat.window, reach) + reach)
+        ensure_curvature(lat, lat.segment, lat.segment + lat.window, reach)
     trace.nearest_time = lat.nearest_time
     trace.prediction_dt = lat.prediction_dt
     _compensate_delay(params, lat)
     sample_horizon(params, lat, lat.nearest_time + delay, horizon)
     build_models(params, lat, horizon)
-    condense(params, lat, qp.H, qp.f, horizon)
+    fill_cost(params, lat, horizon)
     fill_bounds(params, lat, qp, inputs.vx, horizon)
-    return _SOLVED if is_finite_problem(qp.H, qp.f, horizon) else _INVALID_MATRIX
+    return _SOLVED
 
 
 @kernel
@@ -201,8 +201,8 @@ def finish_mpc(params, lat, qp, trace, now):
         lat.steering_filter, limited, params.steering_lpf_cutoff_hz, params.ctrl_period
     )
     if params.vehicle_model_type == _KINEMATICS:
-        advance(lat.A[0], lat.B[0], lat.W[0], raw, lat.x0_delayed, lat.free[0])
-        rate = (lat.free[0, 2] - lat.x0_delayed[2]) / lat.prediction_dt
+        advance(lat.A[0], lat.B[0], lat.W[0], raw, lat.x0_delayed, lat.x_next)
+        rate = (lat.x_next[2] - lat.x0_delayed[2]) / lat.prediction_dt
     else:
         rate = (angle - lat.measured) / lat.prediction_dt
     lat.raw_pprev = lat.raw_prev

@@ -3,7 +3,12 @@
 
 import math
 
-from safety_island.control.geometry import normalize_angle, yaw_of
+from safety_island.control.geometry import (
+    clear_turn,
+    cosine_of_limit,
+    heading_of,
+    normalize_angle,
+)
 from safety_island.kernel.kernel import kernel
 
 
@@ -28,6 +33,8 @@ def _global_nearest(points, n, x, y):
         if squared < best_squared:
             best_squared = squared
             best = i
+            if squared == 0.0:  # none is nearer
+                break
     return best, best_squared
 
 
@@ -36,15 +43,20 @@ def _nearest_within(points, n, x, y, yaw, limit_squared, yaw_limit):
     """Nearest point of the first run of points within both limits; -1 when there is none."""
     best = -1
     best_squared = math.inf
+    has_yaw_limit = yaw_limit < math.inf
+    cos_yaw, sin_yaw = math.cos(yaw), math.sin(yaw)
+    cos_limit = cosine_of_limit(yaw_limit) if has_yaw_limit else 0.0
     for i in range(n):
         point = points[i]
         dx = point.x - x
         dy = point.y - y
         squared = dx * dx + dy * dy
         inside = squared <= limit_squared
-        if inside and yaw_limit < math.inf:
-            own = yaw_of(point.qx, point.qy, point.qz, point.qw)
-            inside = abs(normalize_angle(own - yaw)) <= yaw_limit
+        if inside and has_yaw_limit:
+            cos_own, sin_own = heading_of(point.qx, point.qy, point.qz, point.qw)
+            clear = clear_turn(cos_own, sin_own, cos_yaw, sin_yaw, cos_limit)
+            turn = 0.0 if clear != 0 else normalize_angle(math.atan2(sin_own, cos_own) - yaw)
+            inside = clear > 0 or (clear == 0 and abs(turn) <= yaw_limit)
         if inside:
             if squared < best_squared:
                 best_squared = squared

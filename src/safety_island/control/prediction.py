@@ -74,7 +74,7 @@ def fill_window(params, lat, speed, ratio, delay, horizon):
     ready = 0
     for w in range(1, end):
         if lat.segment + w >= ready:
-            ready = ensure(lat, lat.segment + w)
+            ready = ensure(lat, lat.segment, lat.segment + w)
         ds = 0.0
         t_before = t
         if w == end - 1:

@@ -7,7 +7,7 @@ Fill ``H``, ``f`` and the four bounds of a record with ``QP_COLUMNS`` (see ``qp_
 
 from safety_island.control.cholesky import factorize, solve_unconstrained
 from safety_island.control.daqp import INFEASIBLE, SOLVED, VIOLATION, solve_dual
-from safety_island.control.qp_check import check_solution, check_unconstrained
+from safety_island.control.qp_check import check_solution, check_unconstrained, violation
 from safety_island.control.qp_records import QP, QP_COLUMNS
 from safety_island.kernel.kernel import kernel
 
@@ -37,7 +37,7 @@ def solve_constrained(q, n, max_iterations):
     if not _feasible(q, n):
         return INFEASIBLE
     solve_unconstrained(q, n)
-    if _inside(q, n):
+    if violation(q, n) <= VIOLATION:
         return SOLVED
     for i in range(n):
         q.qp_free[i] = q.u[i]
@@ -59,18 +59,3 @@ def _feasible(q, n):
         high = min(high + q.ubA[i], q.ub[i])
         feasible = feasible and low <= high + VIOLATION
     return feasible
-
-
-@kernel
-def _inside(q, n):
-    """Whether ``u`` keeps all bounds."""
-    before = 0.0
-    for i in range(n):
-        value = q.u[i]
-        change = value - before
-        if value > q.ub[i] + VIOLATION or value < q.lb[i] - VIOLATION:
-            return False
-        if change > q.ubA[i] + VIOLATION or change < q.lbA[i] - VIOLATION:
-            return False
-        before = value
-    return True

@@ -41,7 +41,7 @@ def check_solution(q, n):
     for i in range(n):
         if not math.isfinite(q.u[i]):
             return SOLUTION_NOT_FINITE
-    q.qp_violation = _violation(q, n)
+    q.qp_violation = violation(q, n)
     if not q.qp_violation <= MAX_VIOLATION:
         return SOLUTION_VIOLATES
     scale = _gradient(q, n)
@@ -59,31 +59,40 @@ def check_unconstrained(q, n):
         if not math.isfinite(q.u[i]):
             return SOLUTION_NOT_FINITE
     scale = _gradient(q, n)
-    gap = 0.0
-    for i in range(n):
-        gap = _greater(gap, abs(q.qp_v[i]))
-    q.qp_residual = gap if scale == 0.0 else gap / scale
-    return SOLVED if q.qp_residual <= MAX_RESIDUAL else SOLUTION_NOT_OPTIMAL
+    return SOLVED if is_stationary(q, n, scale) else SOLUTION_NOT_OPTIMAL
 
 
 @kernel
-def _greater(a, b):
+def is_stationary(q, n, scale):
+    """Whether the gradient in ``qp_v`` vanishes beside its terms' greatest magnitude ``scale``.
+
+    Sets ``qp_residual``; NaN in the gradient makes it NaN, and does not vanish.
+    """
+    gap = 0.0
+    for i in range(n):
+        gap = greater(gap, abs(q.qp_v[i]))
+    q.qp_residual = gap if scale == 0.0 else gap / scale
+    return q.qp_residual <= MAX_RESIDUAL
+
+
+@kernel
+def greater(a, b):
     """The greater of two numbers, NaN when one is NaN."""
     return a if a >= b or a != a else b
 
 
 @kernel
-def _violation(q, n):
+def violation(q, n):
     """Greatest excess over a bound [rad]; NaN when a bound is NaN."""
     worst = 0.0
     before = 0.0
     for i in range(n):
         value = q.u[i]
         change = value - before
-        worst = _greater(worst, value - q.ub[i])
-        worst = _greater(worst, q.lb[i] - value)
-        worst = _greater(worst, change - q.ubA[i])
-        worst = _greater(worst, q.lbA[i] - change)
+        worst = greater(worst, value - q.ub[i])
+        worst = greater(worst, q.lb[i] - value)
+        worst = greater(worst, change - q.ubA[i])
+        worst = greater(worst, q.lbA[i] - change)
         if worst != worst:
             return worst
         before = value
@@ -111,7 +120,7 @@ def _gradient(q, n):
             g[i] += a[i] * x
     scale = 0.0
     for i in range(n):
-        scale = _greater(_greater(scale, abs(g[i])), abs(q.f[i]))
+        scale = greater(greater(scale, abs(g[i])), abs(q.f[i]))
         g[i] += q.f[i]
     return scale
 
@@ -138,11 +147,11 @@ def _chain_gap(q, n):
         allowed_high = math.inf if change >= q.ubA[i] - MAX_VIOLATION else 0.0
         allowed_low = -math.inf if change <= q.lbA[i] + MAX_VIOLATION else 0.0
         if not low <= allowed_high:
-            gap = _greater(gap, low - allowed_high)
+            gap = greater(gap, low - allowed_high)
             low = allowed_high
             high = allowed_high
         elif not high >= allowed_low:
-            gap = _greater(gap, allowed_low - high)
+            gap = greater(gap, allowed_low - high)
             low = allowed_low
             high = allowed_low
         else:

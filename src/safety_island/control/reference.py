@@ -2,14 +2,20 @@
 """The reference path of the MPC: the accepted trajectory, resampled by arc length at the ego.
 
 Only the stations are placed for the whole path. Positions and speeds (``reference_positions``), yaw
-and curvature (``reference_shape``) are worked out as far as they are asked for, which gives the
-same numbers.
+and curvature (``reference_shape``) are worked out where they are asked for, which gives the same
+numbers.
 """
 
 from safety_island.control.geometry import clip, yaw_of
 from safety_island.control.limits import MAX_REFERENCE
 from safety_island.control.points import advance, nearest_index, offset_along, segment_of
-from safety_island.control.reference_positions import close, ensure, extend, work_out
+from safety_island.control.reference_positions import (
+    close,
+    extend,
+    leave_source,
+    work_out,
+    work_out_whole,
+)
 from safety_island.control.reference_shape import starts_close
 from safety_island.control.reference_smoothing import smooth_reference
 from safety_island.control.spline import (
@@ -40,7 +46,7 @@ def _is_point(points, n):
 def accept_source(params, points, n, lat):
     """Take over a received trajectory of n >= 3 points: arc length and spline coefficients."""
     if _is_point(points, n):  # it will make no reference, and the one in force stays
-        ensure(lat, lat.ref_n)
+        leave_source(lat)
     px = lat.px
     py = lat.py
     pz = lat.pz
@@ -60,6 +66,22 @@ def accept_source(params, points, n, lat):
     lat.source_yaw_end = yaw_of(last.qx, last.qy, last.qz, last.qw)
     fit_space_curve(lat.arc, lat.gain, px, py, pz, lat.mx, lat.my, lat.mz, n)
     lat.source_n = n
+    lat.bulge = _bulge(lat, n)
+
+
+@kernel
+def _bulge(lat, n):
+    """How far a place of the curve can be from the nearer end of its interval [m], at most.
+
+    On the chord of an interval of length h that is h / 2. A curve is away from its chord by h^2 / 8
+    of its greatest second derivative at most, which a cubic has at an end.
+    """
+    bulge = 0.0
+    for i in range(n - 1):
+        h = lat.arc[i + 1] - lat.arc[i]
+        bend = max(abs(lat.mx[i]), abs(lat.mx[i + 1])) + max(abs(lat.my[i]), abs(lat.my[i + 1]))
+        bulge = max(bulge, h * (0.5 + 0.125 * h * bend))
+    return bulge
 
 
 @kernel
@@ -147,14 +169,15 @@ def update_reference(params, points, inputs, lat):
     if count == 0:  # shorter than a micrometre: nothing to follow, the old reference stays
         return
     lat.ref_n = count
-    lat.ready = lat.cursor = 0
+    lat.first = lat.ready = lat.cursor = 0
+    lat.is_on_splines = True
     lat.one_sided_ends = params.one_sided_ends
     smooths = params.enable_path_smoothing and count > 2 * params.path_filter_moving_ave_num
     if not smooths and not params.extend_trajectory_for_end_yaw_control:
-        ensure(lat, 1)
+        work_out(lat, 0, min(count, 3))  # the direction reads these
         _set_direction(params, points, lat, count)
         return
-    work_out(lat, count)
+    work_out_whole(lat, count)
     _set_direction(params, points, lat, count)
     if smooths:
         smooth_reference(lat, count, params.path_filter_moving_ave_num)

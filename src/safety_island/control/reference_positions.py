@@ -1,7 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Positions and speeds of the reference, from its first point as far as they are asked for.
+"""Positions and speeds of the reference, worked out where they are read and nowhere else.
 
-A trajectory may be three times as long as the horizon; what lies beyond it costs nothing.
+A trajectory may be three times as long as the horizon, and it begins behind the vehicle. So of the
+reference only one stretch without gaps, the points ``first`` <= i < ``ready``, holds numbers: it
+grows, at either end, to hold whatever is asked for with ``ensure``. The one invariant:
+
+    No point is read that was not asked for, and what stands in the stretch is what would stand
+    there if the whole reference had been worked out.
+
+It rests on the splines of the source. Where the points are not on them any more (smoothed,
+extended, received with times, or of a trajectory before the present one) all of them are in the
+stretch, and nothing can be added.
 """
 
 import math
@@ -10,13 +19,13 @@ from safety_island.control.limits import MAX_REFERENCE
 from safety_island.control.spline import interval_from
 from safety_island.kernel.kernel import kernel
 
-_STRETCH = 64
-"""Points that are worked out beyond the one that was asked for."""
+_STRETCH = 16
+"""Points that are worked out beyond the last one that was asked for."""
 
 
 @kernel
-def work_out(lat, end):
-    """Fill x, y, z and speed up to ``end``: cubic splines for positions, linear for speed."""
+def work_out(lat, begin, end):
+    """Fill x, y, z and speed of points begin <= i < end: cubic splines, linear for speed."""
     arc = lat.arc
     px = lat.px
     py = lat.py
@@ -31,8 +40,8 @@ def work_out(lat, end):
     rz = lat.rz
     rv = lat.rv
     n = lat.source_n
-    i = lat.ready
-    j = lat.cursor
+    i = begin
+    j = lat.cursor if begin < end and rs[begin] > arc[lat.cursor] else 0
     while i < end:
         j = interval_from(arc, n, j, rs[i])
         last = math.inf if j == n - 2 else arc[j + 1]
@@ -62,7 +71,6 @@ def work_out(lat, end):
             rz[i] = ((az * t + bz) * t + cz) * t + z0
             rv[i] = v0 + slope * t
             i += 1
-    lat.ready = end
     lat.cursor = j
 
 
@@ -97,20 +105,49 @@ def close(lat, count):
     lat.rz[count] = lat.rz[count - 1]
     lat.rv[count] = 0.0
     lat.ref_n = count
-    lat.ready = count + 1
 
 
 @kernel
-def ensure(lat, i):
-    """Work out point ``i`` and those before it, and some beyond; returns how many are.
+def work_out_whole(lat, count):
+    """Fill all ``count`` points, so that they can be changed; ``close`` them then."""
+    work_out(lat, 0, count)
+    lat.first = 0
+    lat.ready = MAX_REFERENCE + 1
+    lat.is_on_splines = False
 
-    ``i`` may be ``ref_n``, the first closing duplicate, at most; what lies beyond counts as that.
-    Without a reference there is nothing to work out.
+
+@kernel
+def leave_source(lat):
+    """Work out what is left of the reference, because the splines of its source will change."""
+    if lat.is_on_splines:
+        ensure(lat, 0, lat.ref_n)
+        lat.is_on_splines = False
+
+
+@kernel
+def ensure(lat, low, high):
+    """Have the points low <= i <= high in the stretch; returns ``ready``, its end.
+
+    ``ref_n``, the first closing duplicate, is the last point; bounds beyond the ends count as
+    these.
     """
-    i = min(i, lat.ref_n)
-    if i >= lat.ready and lat.ref_n > 0:
-        end = min(i + _STRETCH, lat.ref_n)
-        work_out(lat, end)
+    if lat.is_on_splines and (low < lat.first or high >= lat.ready):
+        _widen(lat, max(low, 0), min(high, lat.ref_n))
+    return lat.ready
+
+
+@kernel
+def _widen(lat, low, high):
+    """Let the stretch reach from ``low`` or before to ``high`` or beyond."""
+    if lat.first == lat.ready:  # it holds nothing yet; the closing duplicate needs the point before
+        lat.first = lat.ready = min(low, lat.ref_n - 1)
+    if low < lat.first:
+        work_out(lat, low, lat.first)
+        lat.first = low
+    if high >= lat.ready:
+        end = min(high + _STRETCH, lat.ref_n)
+        work_out(lat, lat.ready, end)
+        lat.ready = end
         if end == lat.ref_n:
             close(lat, end)
-    return lat.ready
+            lat.ready = end + 1

@@ -6,12 +6,16 @@ Yaw and curvature read points around the one that they are asked for, which must
 
 import math
 
-from safety_island.control.geometry import normalize_angle
+from safety_island.control.geometry import clear_turn, cosine_of_limit, normalize_angle
 from safety_island.control.reference_positions import ensure
+from safety_island.control.spline import interval_from
 from safety_island.kernel.kernel import kernel
 
 TOO_CLOSE = 1e-3
 """Points of the reference nearer than this [m] give no direction and no curvature."""
+
+_ROUNDING = 1e-6
+"""More than rounding can shift a position [m]."""
 
 
 @kernel
@@ -23,9 +27,15 @@ def _is_short(lat, i, j):
 
 
 @kernel
+def _has_close_neighbours(lat, i):
+    """Whether point ``i`` and those on either side are too close together to give a direction."""
+    return _is_short(lat, i - 1, i + 1) or _is_short(lat, i - 1, i) or _is_short(lat, i, i + 1)
+
+
+@kernel
 def starts_close(lat):
     """Whether the first points of a reference of three or more are too close together."""
-    return _is_short(lat, 0, 1) or _is_short(lat, 1, 2) or _is_short(lat, 0, 2)
+    return _has_close_neighbours(lat, 1)
 
 
 @kernel
@@ -45,8 +55,8 @@ def _yaw_one_sided(lat, i):
         return _direction(lat, last - 1, last)
     i = min(max(i, 1), last - 1)
     while i > 0:
-        close = _is_short(lat, i - 1, i + 1) or _is_short(lat, i - 1, i) or _is_short(lat, i, i + 1)
-        if not close:
+        ensure(lat, i - 1, i + 1)
+        if not _has_close_neighbours(lat, i):
             return _direction(lat, i - 1, i + 1)
         i -= 1
     return lat.short_yaw[0]
@@ -108,48 +118,159 @@ def curvature_at(lat, i, reach):
         i -= 1
         if i < span:
             return 0.0
+        ensure(lat, i - span, i + span)
+
+
+@kernel
+def ensure_yaw(lat, low, high):
+    """Ask for what ``yaw_at`` reads of points low <= i <= high; at the ends that is inside."""
+    ensure(lat, min(low, lat.ref_n - 2) - 1, max(high, 1) + 1)
+
+
+@kernel
+def ensure_curvature(lat, low, high, reach):
+    """Ask for what ``curvature_at`` reads of points low <= i <= high, up to this reach.
+
+    At the ends the nearest curvature counts that there is, whose points lie further inside.
+    """
+    ensure(lat, min(low, lat.ref_n - 1 - reach) - reach, max(high, reach) + reach)
+
+
+@kernel
+def _station_beyond(lat, s):
+    """Index of the first point whose station is beyond arc length ``s``; ref_n when none is."""
+    n = lat.ref_n
+    rs = lat.rs
+    step = (rs[n - 1] - rs[0]) / max(n - 1, 1)
+    i = min(max(int((s - rs[0]) / step), 0), n - 1) if step > 0.0 else 0
+    while i > 0 and rs[i - 1] > s:
+        i -= 1
+    while i < n and rs[i] <= s:
+        i += 1
+    return i
+
+
+@kernel
+def _next_near(lat, i, x, y, limit):
+    """The first point from ``i`` on that may lie within ``limit`` [m] of (x, y); else ref_n + 1.
+
+    A point lies on the curve of an interval of the source, so within ``bulge`` of one of its ends.
+    An interval with both ends further away than limit + bulge has no such point.
+    """
+    end = lat.ref_n
+    if not lat.is_on_splines or i >= end:
+        return i
+    start = interval_from(lat.arc, lat.source_n, lat.near_interval if i > 0 else 0, lat.rs[i])
+    j = _near_interval(lat, start, x, y, limit + lat.bulge + _ROUNDING)
+    if j < 0:
+        return end + 1
+    lat.near_interval = j
+    return i if j == start else _station_beyond(lat, lat.arc[j])
+
+
+@kernel
+def _near_interval(lat, j, x, y, reach):
+    """The first interval of the source from ``j`` on with an end within ``reach`` [m]; -1: none.
+
+    The path does not come nearer by more than its length, so many ends need not be looked at.
+    """
+    last = lat.source_n - 1
+    while True:
+        distance = _distance(lat, j, x, y)
+        if distance <= reach:
+            return j
+        ahead = lat.arc[j] + (distance - reach)
+        while j < last and lat.arc[j + 1] < ahead:
+            j += 1
+        if j == last:
+            return -1
+        if _distance(lat, j + 1, x, y) <= reach:
+            return j
+        j += 1
+
+
+@kernel
+def _distance(lat, j, x, y):
+    """Distance [m] of point ``j`` of the source from (x, y)."""
+    dx = lat.px[j] - x
+    dy = lat.py[j] - y
+    return math.sqrt(dx * dx + dy * dy)
+
+
+@kernel
+def _plain_direction(lat, i):
+    """Where the vehicle faces at point ``i`` by central differences; (0, 0) where another rule is.
+
+    What ``yaw_at`` takes the angle of, at most points.
+    """
+    if lat.is_timed or i < 1 or i > lat.ref_n - 2:
+        return 0.0, 0.0
+    if lat.one_sided_ends and _has_close_neighbours(lat, i):
+        return 0.0, 0.0
+    sign = 1.0 if lat.is_forward else -1.0
+    return sign * (lat.rx[i + 1] - lat.rx[i - 1]), sign * (lat.ry[i + 1] - lat.ry[i - 1])
 
 
 @kernel
 def _nearest_within(lat, x, y, yaw, dist_limit, yaw_limit):
+    """Nearest point of the first run of points within both limits; -1 when there is none."""
     best = -1
     best_squared = math.inf
-    rx = lat.rx
-    ry = lat.ry
-    ready = 0
-    for i in range(lat.ref_n + 1):
-        if i + 1 >= ready:  # the yaw reads the point behind
-            ready = ensure(lat, i + 1)
-        dx = rx[i] - x
-        dy = ry[i] - y
+    has_yaw_limit = yaw_limit < math.inf
+    cos_yaw, sin_yaw = math.cos(yaw), math.sin(yaw)
+    cos_limit = cosine_of_limit(yaw_limit) if has_yaw_limit else 0.0
+    i = _next_near(lat, 0, x, y, dist_limit)
+    while i <= lat.ref_n:
+        ensure_yaw(lat, i, i)
+        dx = lat.rx[i] - x
+        dy = lat.ry[i] - y
         squared = dx * dx + dy * dy
         inside = squared <= dist_limit * dist_limit
-        if inside and yaw_limit < math.inf:
-            inside = abs(normalize_angle(yaw_at(lat, i) - yaw)) <= yaw_limit
+        if inside and has_yaw_limit:
+            dx, dy = _plain_direction(lat, i)
+            clear = clear_turn(dx, dy, cos_yaw, sin_yaw, cos_limit)
+            turn = 0.0 if clear != 0 else normalize_angle(yaw_at(lat, i) - yaw)
+            inside = clear > 0 or (clear == 0 and abs(turn) <= yaw_limit)
         if inside:
             if squared < best_squared:
                 best_squared = squared
                 best = i
+            i += 1
         elif best >= 0:
             break
+        else:
+            i = _next_near(lat, i + 1, x, y, dist_limit)
     return best
 
 
 @kernel
 def _nearest_global(lat, x, y):
-    ensure(lat, lat.ref_n)
+    """Nearest point of all; of equals the first."""
+    limit = _distance_of_anchor(lat, x, y)
     best = 0
     best_squared = math.inf
-    rx = lat.rx
-    ry = lat.ry
-    for i in range(lat.ref_n):
-        dx = rx[i] - x
-        dy = ry[i] - y
+    i = _next_near(lat, 0, x, y, limit)
+    while i < lat.ref_n:
+        ensure(lat, i, i)
+        dx = lat.rx[i] - x
+        dy = lat.ry[i] - y
         squared = dx * dx + dy * dy
         if squared < best_squared:
             best_squared = squared
             best = i
+        i = _next_near(lat, i + 1, x, y, limit)
     return best
+
+
+@kernel
+def _distance_of_anchor(lat, x, y):
+    """Distance [m] of the point at the ego's projection: the nearest one is not further away."""
+    if not lat.is_on_splines:
+        return math.inf
+    ensure(lat, lat.anchor, lat.anchor)
+    dx = lat.rx[lat.anchor] - x
+    dy = lat.ry[lat.anchor] - y
+    return math.sqrt(dx * dx + dy * dy)
 
 
 @kernel
@@ -173,7 +294,7 @@ def segment_on_reference(lat, nearest, x, y):
     """
     if nearest <= 0:
         return 0
-    ensure(lat, nearest + 1)
+    ensure(lat, nearest - 1, nearest + 1)
     dx = lat.rx[nearest + 1] - lat.rx[nearest]
     dy = lat.ry[nearest + 1] - lat.ry[nearest]
     if abs(dx) < 1e-8 and abs(dy) < 1e-8:

@@ -220,7 +220,7 @@ def _close(lat, n):
         lat.rk[i] = lat.rk[n - 1]
         lat.rks[i] = lat.rks[n - 1]
     lat.ref_n = n
-    lat.ready = n + 1
+    lat.is_on_splines = False
     lat.is_timed = True
 
 

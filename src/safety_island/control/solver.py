@@ -1,12 +1,27 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The choice of solver for the quadratic programme; a solution is checked before it is used."""
+"""The choice of solver for the quadratic programme; a solution is checked before it is used.
+
+In most ticks no limit is active. Then the recursion finds the optimum without a matrix, and its
+gradient, which one more sweep over the models gives, proves it. In every other case, whatever the
+reason, the condensed problem decides: it alone says that there is no solution, and why.
+"""
 
 from safety_island.control.cholesky import factorize, solve_unconstrained
+from safety_island.control.condense import condense
+from safety_island.control.daqp import VIOLATION
+from safety_island.control.gradient import fill_gradient
 from safety_island.control.qp import MAX_ITERATIONS, solve_constrained
-from safety_island.control.qp_check import check_solution, check_unconstrained
+from safety_island.control.qp_check import (
+    check_solution,
+    check_unconstrained,
+    is_stationary,
+    violation,
+)
+from safety_island.control.recursion import solve_recursively
 from safety_island.control.status import MpcStatus, Solver
 from safety_island.kernel.kernel import kernel
 
+_INVALID_MATRIX = int(MpcStatus.INVALID_MATRIX)
 _SOLVED = int(MpcStatus.SOLVED)
 _UNCONSTRAINT_FAST = int(Solver.UNCONSTRAINT_FAST)
 
@@ -33,11 +48,31 @@ def solve_within_limits(qp, n, max_iterations):
 
 
 @kernel
-def solve(params, qp):
+def _is_free_optimum(params, lat, qp, n):
+    """Set ``u`` to the optimum without limits; whether that is proved, and limits are kept."""
+    qp.qp_iterations = 0
+    qp.qp_active_count = 0
+    qp.qp_violation = 0.0
+    if not solve_recursively(params, lat, qp.u, n):
+        return False
+    if params.qp_solver_type != _UNCONSTRAINT_FAST:
+        qp.qp_violation = violation(qp, n)
+        if not qp.qp_violation <= VIOLATION:
+            return False
+    return is_stationary(qp, n, fill_gradient(params, lat, qp.u, n, qp.qp_v))
+
+
+@kernel
+def solve(params, lat, qp):
     """Solve with the chosen solver of our own and check the solution; an MpcStatus."""
+    n = params.mpc_prediction_horizon
+    if _is_free_optimum(params, lat, qp, n):
+        return _SOLVED
+    if not condense(params, lat, qp, n):
+        return _INVALID_MATRIX
     if params.qp_solver_type == _UNCONSTRAINT_FAST:
-        return solve_without_limits(qp, params.mpc_prediction_horizon)
-    return solve_within_limits(qp, params.mpc_prediction_horizon, MAX_ITERATIONS)
+        return solve_without_limits(qp, n)
+    return solve_within_limits(qp, n, MAX_ITERATIONS)
 
 
 @kernel

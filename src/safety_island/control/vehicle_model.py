@@ -13,6 +13,7 @@ from safety_island.kernel.kernel import kernel
 
 _KINEMATICS = int(VehicleModel.KINEMATICS)
 _NO_DELAY = int(VehicleModel.KINEMATICS_NO_DELAY)
+_STATES = 4
 
 
 @kernel
@@ -161,6 +162,34 @@ def discretize(params, v, k, dt, work, a, b, w):
         _kinematics_no_delay(params, v, k, dt, a, b, w)
     else:
         _dynamics(params, v, k, dt, work, a, b, w)
+
+
+@kernel
+def advance(a, b, w, u, x, out):
+    """out = a x + b u + w."""
+    for r in range(_STATES):
+        total = b[r] * u + w[r]
+        for c in range(_STATES):
+            total += a[r, c] * x[c]
+        out[r] = total
+
+
+@kernel
+def advance_kinematic(a, b, w, u, x0, x1, x2):
+    """The same for a kinematic model: a = [[1, *, *], [0, 1, *], [0, 0, *]], w[2] = 0."""
+    y0 = x0 + a[0, 1] * x1 + a[0, 2] * x2 + b[0] * u + w[0]
+    y1 = x1 + a[1, 2] * x2 + b[1] * u + w[1]
+    return y0, y1, a[2, 2] * x2 + b[2] * u
+
+
+@kernel
+def advance_dynamic(a, b, w, u, x0, x1, x2, x3):
+    """The same for a model of four states, any of them coupled, held in locals."""
+    y0 = a[0, 0] * x0 + a[0, 1] * x1 + a[0, 2] * x2 + a[0, 3] * x3 + b[0] * u + w[0]
+    y1 = a[1, 0] * x0 + a[1, 1] * x1 + a[1, 2] * x2 + a[1, 3] * x3 + b[1] * u + w[1]
+    y2 = a[2, 0] * x0 + a[2, 1] * x1 + a[2, 2] * x2 + a[2, 3] * x3 + b[2] * u + w[2]
+    y3 = a[3, 0] * x0 + a[3, 1] * x1 + a[3, 2] * x2 + a[3, 3] * x3 + b[3] * u + w[3]
+    return y0, y1, y2, y3
 
 
 @kernel

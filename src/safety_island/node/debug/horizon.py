@@ -74,7 +74,7 @@ class Horizon:
     def _first_rate(self, angle: float) -> float:
         lat = self._follower.lateral
         if self._model is VehicleModel.KINEMATICS:
-            return float(lat.free[0, 2] - lat.x0_delayed[2]) / self.step_s
+            return float(lat.x_next[2] - lat.x0_delayed[2]) / self.step_s
         return (angle - float(lat.measured)) / self.step_s
 
     def times(self) -> Column:

@@ -10,6 +10,8 @@ from __future__ import annotations
 
 import re
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -48,11 +50,36 @@ def ir_of(entry: Any) -> str:
     signature = numba.int32(*entry.signature())
     options: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
     njit: Any = numba.njit
-    dispatcher = njit(signature, **FLAGS, **options)(entry.python)
+    with indexes_as_in_c():
+        dispatcher = njit(signature, **FLAGS, **options)(entry.python)
     (compiled,) = dispatcher.overloads.values()
     module = llvm.parse_assembly(compiled.library.get_llvm_str())
     module.get_function(compiled.fndesc.mangled_name).name = NATIVE + entry.name
     return str(module)
+
+
+@contextmanager
+def indexes_as_in_c() -> Iterator[None]:
+    """Have Numba use an index as it is, as C does.
+
+    It would make one from the end of a negative one, which takes four instructions at every
+    access. No kernel has any: ``tests/targets/aot/test_kernel_indexes.py``.
+    """
+    import numba
+    import numba.np.arrayobj as arrays
+
+    usual: Any = arrays.fix_integer_index
+
+    def as_it_is(context: Any, builder: Any, kind: Any, index: Any, size: Any) -> Any:
+        if not kind.signed:
+            return usual(context, builder, kind, index, size)
+        return context.cast(builder, index, kind, numba.types.intp)
+
+    arrays.fix_integer_index = as_it_is
+    try:
+        yield
+    finally:
+        arrays.fix_integer_index = usual
 
 
 def essence(message: str) -> str:
