@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """A pytest plugin that counts negative indexes in compiled kernels, and fails the run at any.
 
-``pytest -p tests.targets.aot.negative_indexes``: the kernels of that process are compiled with a counter
-at every access to an array. They need a cache of their own, for the counter's place is in them.
+``pytest -p tests.targets.aot.negative_indexes``: the kernels of that process are compiled with a
+counter at every access to an array. They need a cache of their own, for the counter's place is in
+them.
 """
 
 from __future__ import annotations

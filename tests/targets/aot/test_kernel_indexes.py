@@ -12,7 +12,7 @@ import pytest
 
 from safety_island.kernel.kernel import JIT
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 DRIVES = (
     "tests/golden/test_parity.py::test_a_run_is_the_firmwares",  # every recording
     "tests/golden/test_current.py",
