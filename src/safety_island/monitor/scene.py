@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the top view draws: the vehicle, where it is, and the paths, cut to what a screen shows."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from safety_island.messages.inputs import Odometry
+from safety_island.messages.points import Points
+from safety_island.monitor.fields import rounded
+from safety_island.params import IslandParameters
+
+MOST_POINTS = 400
+"""Of a path on its way to the page."""
+CENTIMETRES = 2
+"""Decimals of a position [m]."""
+
+
+def heading(odometry: Odometry) -> float:
+    """Return the yaw [rad] of a pose."""
+    _, _, _, _, _, _, qx, qy, qz, qw, *_ = odometry
+    return math.atan2(2.0 * (qw * qz + qx * qy), 1.0 - 2.0 * (qy * qy + qz * qz))
+
+
+def pose_values(now: float, odometry: Odometry, steering: float) -> dict[str, Any] | None:
+    """Return the pose at ``now`` [s] and the tyre angle [rad]; None when it is no number."""
+    place = (odometry.x, odometry.y, heading(odometry))
+    if not all(map(math.isfinite, place)):
+        return None
+    x, y, yaw = place
+    return {
+        "t": round(now, 3),
+        "x": round(x, CENTIMETRES + 1),
+        "y": round(y, CENTIMETRES + 1),
+        "yaw": round(yaw, 4),
+        "steering": rounded(steering),
+    }
+
+
+def path_values(points: Points) -> dict[str, list[float]]:
+    """Return places [m] and speeds [m/s] of a trajectory, first and last among them.
+
+    Points that are no numbers are left out: the island refuses such a trajectory, and says so.
+    """
+    step = max(1, -(-len(points) // MOST_POINTS))
+    kept = points[::step]
+    if len(points) and (len(points) - 1) % step:
+        kept = [*kept, points[-1]]
+    columns: dict[str, list[float]] = {"x": [], "y": [], "v": []}
+    for point in kept:
+        place = float(point["x"]), float(point["y"]), float(point["v"])
+        if all(map(math.isfinite, place)):
+            for column, value in zip(columns.values(), place, strict=True):
+                column.append(round(value, CENTIMETRES))
+    return columns
+
+
+def vehicle_values(parameters: IslandParameters) -> dict[str, float]:
+    """Return the dimensions of the vehicle [m] and its largest tyre angle [rad]."""
+    vehicle = parameters.vehicle
+    names = (
+        "wheel_radius",
+        "wheel_width",
+        "wheel_base",
+        "wheel_tread",
+        "front_overhang",
+        "rear_overhang",
+        "left_overhang",
+        "right_overhang",
+        "max_steer_angle",
+    )
+    return {name: getattr(vehicle, name) for name in names}
