@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import secrets
 from typing import TYPE_CHECKING
 
@@ -14,6 +15,8 @@ if TYPE_CHECKING:
     from safety_island.monitor.program import Monitor, MonitorOptions
 
 DEFAULT_PORT = 8140
+NICE = 5
+"""Whoever drives comes first."""
 _TOKEN_BYTES = 16
 
 
@@ -71,13 +74,15 @@ def execute(arguments: argparse.Namespace) -> int:
     """Serve until told to stop."""
     import asyncio
 
+    from safety_island.cli.browser import open_page
     from safety_island.cli.jsonlines import JsonLines
     from safety_island.cli.stopping import StopFlag
-    from safety_island.cli.tell import tell_lost
+    from safety_island.cli.tell import tell, tell_lost
     from safety_island.monitor.console import Console
     from safety_island.monitor.program import Monitor
     from safety_island.platform import load
 
+    os.nice(NICE)
     platform, stop = load("posix"), StopFlag()
     report = JsonLines(tell_lost).write if arguments.json else None
     console = Console() if arguments.console else None
@@ -98,8 +103,8 @@ def execute(arguments: argparse.Namespace) -> int:
             report("address", {"address": address, "port": monitor.server.port})
         else:
             _say_where(arguments.port, monitor)
-        if arguments.open:
-            open_page(address)
+        if arguments.open and not open_page(address):
+            tell("island: --open: there is no desktop to open the page on (DISPLAY is not set)")
 
     def between(monitor: Monitor) -> None:
         if console is not None:
@@ -108,20 +113,6 @@ def execute(arguments: argparse.Namespace) -> int:
     with platform.on_stop(stop.set):
         asyncio.run(monitor.run(is_over, on_address, between))
     return 0
-
-
-def open_page(address: str) -> None:
-    """Show a page in the browser of the desktop, where there is one; wait for nothing."""
-    import os
-    import shutil
-    import subprocess
-
-    opener = shutil.which("xdg-open")
-    if opener and (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
-        quiet = subprocess.DEVNULL
-        subprocess.Popen(
-            [opener, address], stdin=quiet, stdout=quiet, stderr=quiet, start_new_session=True
-        )
 
 
 def _say_where(wanted: int, monitor: Monitor) -> None:

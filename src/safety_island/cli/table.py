@@ -37,7 +37,10 @@ COMMANDS = (
         "status", "status", "Show what the island does, and why nothing is published.", _ONE_DOMAIN
     ),
     Command(
-        "monitor", "monitor", "Serve a live page of what the island does, for a browser.", _ONE_DOMAIN
+        "monitor",
+        "monitor",
+        "Serve a live page of what the island does, for a browser.",
+        _ONE_DOMAIN,
     ),
     Command("arm", "arm", "Ask a silent island to send commands again.", _ONE_DOMAIN),
     Command("bridge", "bridge", "Forward topics between two DDS domains.", _TWO_DOMAINS),

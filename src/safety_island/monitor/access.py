@@ -35,7 +35,7 @@ def is_own_host(header: str | None, port: int, *, loopback: bool) -> bool:
 
 
 def is_own_origin(origin: str | None, host: str | None) -> bool:
-    """Whether a WebSocket comes from this server's page; a program that is no browser names none."""
+    """Whether a WebSocket comes from this server's page; only a browser says where from."""
     return origin is None or origin == f"http://{host}"
 
 

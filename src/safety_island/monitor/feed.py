@@ -93,7 +93,9 @@ class Feed:
 
     def _take_path(self, kind: str) -> Callable[[float, bytes], None]:
         def take(now: float, data: bytes) -> None:
-            self._hub.publish(kind, {"t": round(now, 3)} | path_values(view_trajectory(data).points))
+            self._hub.publish(
+                kind, {"t": round(now, 3)} | path_values(view_trajectory(data).points)
+            )
 
         return take
 
@@ -136,5 +138,3 @@ class Feed:
             if remote.guid == guid:
                 return self._participant.node_of(remote) or guid.hex()
         return guid.hex()
-
-

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from safety_island import __version__
+from safety_island.control.status import LongitudinalState
 from safety_island.dds import topics
 from safety_island.dds.config import DdsConfig
 from safety_island.dds.participant import Participant
@@ -19,7 +20,6 @@ from safety_island.monitor.history import SECONDS
 from safety_island.monitor.hub import Hub
 from safety_island.monitor.scene import vehicle_values
 from safety_island.monitor.server import PageServer, Place
-from safety_island.control.status import LongitudinalState
 from safety_island.params import IslandParameters
 from safety_island.platform.interfaces import Clock
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections import deque
 from statistics import median
 
-WINDOW_S = 2.0
+WINDOW_S = 4.0
 """A rate is taken over so long a time [s]."""
 PERIODS = 15
 

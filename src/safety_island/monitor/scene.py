@@ -6,6 +6,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import numpy as np
+
 from safety_island.messages.inputs import Odometry
 from safety_island.messages.points import Points
 from safety_island.monitor.fields import rounded
@@ -43,17 +45,11 @@ def path_values(points: Points) -> dict[str, list[float]]:
 
     Points that are no numbers are left out: the island refuses such a trajectory, and says so.
     """
-    step = max(1, -(-len(points) // MOST_POINTS))
-    kept = points[::step]
-    if len(points) and (len(points) - 1) % step:
-        kept = [*kept, points[-1]]
-    columns: dict[str, list[float]] = {"x": [], "y": [], "v": []}
-    for point in kept:
-        place = float(point["x"]), float(point["y"]), float(point["v"])
-        if all(map(math.isfinite, place)):
-            for column, value in zip(columns.values(), place, strict=True):
-                column.append(round(value, CENTIMETRES))
-    return columns
+    count = min(len(points), MOST_POINTS)
+    kept = points[np.linspace(0, len(points) - 1, count).round().astype(int)]
+    columns = np.array([kept[name] for name in ("x", "y", "v")], float)
+    finite = columns[:, np.isfinite(columns).all(axis=0)].round(CENTIMETRES)
+    return dict(zip("xyv", finite.tolist(), strict=True))
 
 
 def vehicle_values(parameters: IslandParameters) -> dict[str, float]:

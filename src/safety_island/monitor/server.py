@@ -120,7 +120,9 @@ class PageServer:
 
     async def _serve_page(self, connection: ServerConnection) -> None:
         if len(self._hub.clients) >= MOST_CLIENTS:
-            await connection.close(TOO_MANY, f"{MOST_CLIENTS} pages are open, the most there may be")
+            await connection.close(
+                TOO_MANY, f"{MOST_CLIENTS} pages are open, the most there may be"
+            )
             return
         with contextlib.suppress(ConnectionClosed):
             if not self._is_local and not await self._greeted(connection):

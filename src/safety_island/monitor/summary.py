@@ -86,15 +86,15 @@ class Summary:
             **{name: named[name] for name in _OF_A_TICK},
             "counters": {text: named[name] for name, text in COUNTERS.items()},
             "inputs": [
-                self._input(now, place, item, named["inputs"][INPUTS[place].name])
+                self._input(status.stamp.seconds, place, item, named["inputs"][INPUTS[place].name])
                 for place, item in enumerate(status.inputs)
             ],
         }
 
     def _input(
-        self, now: float, place: int, item: InputStatus, named: dict[str, Any]
+        self, stamp_s: float, place: int, item: InputStatus, named: dict[str, Any]
     ) -> dict[str, Any]:
-        rate = self._rates[place].next(now, item.received)
+        rate = self._rates[place].next(stamp_s, item.received)
         known = any(item.writer_guid)
         return {
             "name": INPUTS[place].name,
@@ -124,5 +124,3 @@ def change_of_state(before: Status | None, status: Status) -> str:
     if before is None or before.state == status.state:
         return ""
     return f"{name_of(State, before.state)} → {name_of(State, status.state)}"
-
-

@@ -16,7 +16,7 @@ export class TopView {
     this.trail = [];
     this.stopDist = NaN;
     this.cursorAt = null;
-    this.scale = 13;
+    this.scale = Math.min(24, Math.max(11, canvas.clientWidth / 45));
     this.centre = { x: 0, y: 0 };
     this.follows = true;
     this.isStale = true;

@@ -43,7 +43,7 @@ export class Panels {
     list($("output"), [
       ["goes to", words(found.output_mode)],
       ["commands", `${found.commands} sent`],
-      [found.control.topic, found.control.rate_hz ? `${number(found.control.rate_hz, 1)} Hz on the domain` : "nothing comes on the domain"],
+      [found.control.topic.split("/").at(-1), found.control.rate_hz ? `${number(found.control.rate_hz, 1)} Hz on the domain` : "nothing comes on the domain"],
       ["period", found.period_s ? `${number(found.period_s * 1e3, 1)} ms` : "–"],
       ["memory", `${number(found.memory_bytes / 1e6, 0)} MB`],
     ]);
@@ -88,7 +88,10 @@ export class Panels {
     const values = Object.entries(found.can).filter(([, value]) => value?.unit !== undefined);
     const table = document.createElement("table");
     table.className = "frames";
-    for (const frame of frames) cells(table, [frame.id, frame.name, code(frame.data)]);
+    for (const frame of frames) { // as candump writes them: identifier#data
+      const [id, data] = frame.split("#");
+      cells(table, [`frame 0x${id}`, code(data.replace(/..(?=.)/g, "$& ")), ""]);
+    }
     for (const [name, value] of values) {
       cells(table, [words(name), value.defined ? `${value.value} ${value.unit}` : "not defined", ""]);
     }

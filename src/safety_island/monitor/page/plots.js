@@ -4,6 +4,7 @@
 import { colour, clock } from "./look.js";
 
 const MS = 1e3, PER_CENT = 100;
+const DECADES = [0.1, 1, 10, 100, 1000];
 
 // Each: title, unit of the left axis, series. A series: field, label, colour, unit; `dash` for what
 // was asked for, `right` for the second axis, `times` for the unit, `digits` of its value.
@@ -53,14 +54,14 @@ export const PLOTS = [
     lines: (facts) => [{ at: facts.period * MS, label: `period ${(facts.period * MS).toFixed(0)} ms` }],
   },
   {
-    title: "Age of the inputs, of their limit", unit: "%", least: 110,
+    title: "Age of the inputs, of their limit", unit: "%", least: 110, most: 200,
     series: [
       { field: "trajectory_age", label: "trajectory", colour: "blue", unit: "ms", digits: 0, times: MS, limit: 0 },
       { field: "odometry_age", label: "odometry", colour: "orange", unit: "ms", digits: 0, times: MS, limit: 1, dash: [7, 4] },
       { field: "steering_age", label: "steering", colour: "green", unit: "ms", digits: 0, times: MS, limit: 2, dash: [2, 3] },
       { field: "acceleration_age", label: "acceleration", colour: "purple", unit: "ms", digits: 0, times: MS, limit: 3, dash: [9, 3, 2, 3] },
     ],
-    lines: () => [{ at: PER_CENT, label: "limit: the output ends", severe: true }],
+    lines: () => [{ at: PER_CENT, label: "limit: the output ends" }],
   },
 ];
 
@@ -109,11 +110,11 @@ export class Plots {
     });
     const scales = {
       x: { time: true, auto: false },
-      y: plot.log ? { distr: 3, range: () => [0.01, 1000] } : { range: (u, low, high) => range(low, high, plot) },
+      y: plot.log ? { distr: 3, range: () => [0.02, 1000] } : { range: (u, low, high) => range(low, high, plot) },
     };
     const axes = [
-      axis({ size: 24, space: 70, values: (u, ticks) => ticks.map((t) => clock(t, 0)) }),
-      axis({ size: 46, space: plot.log ? 16 : 26, values: plot.log ? decades : undefined }),
+      axis({ size: 24, space: 70, values: times }),
+      axis({ size: 46, space: 26, ...(plot.log && { splits: () => DECADES, filter: (u, splits) => splits, values: (u, ticks) => ticks.map(String) }) }),
     ];
     if (plot.right) {
       scales.right = { range: (u, low, high) => range(low, high, { symmetric: plot.symmetricRight }) };
@@ -205,6 +206,7 @@ export class Plots {
     const scale = u.scales.y;
     ctx.save();
     ctx.font = `${11 * devicePixelRatio}px system-ui, sans-serif`;
+    ctx.textAlign = "left";
     for (const line of plot.lines?.(this.facts) ?? []) {
       if (!(line.at >= scale.min && line.at <= scale.max)) continue;
       const y = Math.round(u.valToPos(line.at, "y", true)) + 0.5;
@@ -249,15 +251,17 @@ function scaled(values, factor) {
 }
 
 // The range of an axis: about zero where it is symmetric, never less than `symmetric` or `least`.
-function range(low, high, { symmetric, least }) {
+function range(low, high, { symmetric, least, most }) {
   if (symmetric) {
     const most = Math.max(symmetric, Math.abs(low ?? 0), Math.abs(high ?? 0)) * 1.12;
     return [-most, most];
   }
-  const top = Math.max(least ?? 1, high ?? 0);
+  const top = Math.min(most ?? Infinity, Math.max(least ?? 1, high ?? 0));
   return [Math.min(0, low ?? 0), top * 1.08];
 }
 
-function decades(u, ticks) {
-  return ticks.map((value) => (value && Number.isInteger(Math.log10(value)) && value >= 0.1 ? String(value) : ""));
+// Times of day, but none that the edge would cut.
+function times(u, ticks) {
+  const { min, max } = u.scales.x, edge = ((max - min) * 28 * devicePixelRatio) / u.bbox.width;
+  return ticks.map((t) => (t < min + edge || t > max - edge ? "" : clock(t, 0)));
 }
