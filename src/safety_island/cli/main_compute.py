@@ -48,7 +48,8 @@ engaged when commands come. When they stop coming the vehicle brakes, as Autowar
         action="store_true",
         help="obey lines on standard input: engage, disengage, stay (engaged when commands stop "
         "coming, as Autoware does), nan and number (the odometry), jump and return (the "
-        "trajectory), freeze TOPIC, thaw TOPIC, end; the topics go on after the drive, until the input is closed",
+        "trajectory), freeze TOPIC, thaw TOPIC, end; the topics go on after the drive, until the "
+        "input is closed",
     )
     options.add_network(parser)
     options.add_duration(parser, 0.0)

@@ -46,6 +46,7 @@ class Client:
 
     def offer(self, kind: str, message: Message) -> None:
         """Send this message, in place of one of its kind that still waits."""
+        self._newest.pop(kind, None)  # the newest of all comes last
         self._newest[kind] = message
         self.wakeup.set()
 
@@ -88,6 +89,7 @@ class Hub:
     def publish(self, kind: str, values: Message) -> None:
         """Keep the newest message of a kind and send it to every page."""
         message = {"kind": kind, **values}
+        self._newest.pop(kind, None)
         self._newest[kind] = message
         for client in self.clients:
             client.offer(kind, message)

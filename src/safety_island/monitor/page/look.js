@@ -45,7 +45,9 @@ export function clock(t, digits) {
 }
 
 export function number(value, digits) {
-  return Number.isFinite(value) ? value.toFixed(digits).replace("-", "−") : "–";
+  if (!Number.isFinite(value)) return "–";
+  const text = value.toFixed(digits);
+  return Number(text) === 0 ? text.replace("-", "") : text.replace("-", "−");
 }
 
 // Change a text only when it is another one: a page that stands still costs nothing.

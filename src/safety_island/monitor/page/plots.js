@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The plots: one time axis and one cursor for all, limits as lines, marks where something happened.
 
-import { colour, clock } from "./look.js";
+import { clock, colour, number } from "./look.js";
 
 const MS = 1e3, PER_CENT = 100;
 const DECADES = [0.1, 1, 10, 100, 1000];
@@ -178,7 +178,7 @@ export class Plots {
     for (const { plot, values } of this.charts) {
       plot.series.forEach((series, k) => {
         const value = this.store.value(series.field, index) * (series.times ?? 1);
-        const text = Number.isFinite(value) ? value.toFixed(series.digits).replace("-", "−") : "–";
+        const text = number(value, series.digits);
         if (values[k].textContent !== text) values[k].textContent = text;
       });
     }
