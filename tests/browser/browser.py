@@ -45,21 +45,31 @@ def open_page(address: str, **context: Any) -> Iterator[tuple[Page, list[str]]]:
 
 
 OVERLAPS = """() => {
-  const shown = (e) => e.checkVisibility() && !e.closest(".uplot, .skip, .events, .toast");
-  const leaves = [...document.querySelectorAll("body *")].filter((e) => shown(e) &&
-    ![...e.children].some(shown) && (e.textContent.trim() || e.matches("button, input, select")) &&
-    !e.closest("select > *, svg"));
-  const box = (e) => e.getBoundingClientRect();
   const name = (e) => `${e.tagName} ${e.id} '${e.textContent.trim().slice(0, 30)}'`;
-  const found = [];
-  for (const [i, a] of leaves.entries()) for (const b of leaves.slice(i + 1)) {
-    const p = box(a), q = box(b);
-    const width = Math.min(p.right, q.right) - Math.max(p.left, q.left);
-    const height = Math.min(p.bottom, q.bottom) - Math.max(p.top, q.top);
-    if (width > 1 && height > 1) found.push(`${name(a)} and ${name(b)}`);
+  const shown = (e) => e.checkVisibility() && !e.closest("option, .uplot, .skip, .events, .toast");
+  const boxes = []; // of each line of each text, and of each control: element, rectangle
+  const texts = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  while (texts.nextNode()) {
+    const { currentNode: text } = texts, parent = text.parentElement;
+    if (!text.data.trim() || !shown(parent)) continue;
+    const range = document.createRange();
+    range.selectNodeContents(text);
+    for (const r of range.getClientRects()) boxes.push([parent, text, r]);
   }
-  for (const e of leaves) {
-    if (box(e).right > document.documentElement.clientWidth + 1) found.push(`${name(e)} is cut`);
+  for (const e of document.querySelectorAll("button, input, select")) {
+    if (shown(e)) boxes.push([e, e, e.getBoundingClientRect()]);
+  }
+  const found = [];
+  for (const [i, [a, node, p]] of boxes.entries()) {
+    if (p.right > document.documentElement.clientWidth + 1) found.push(`${name(a)} is cut`);
+    for (const [b, other, q] of boxes.slice(i + 1)) {
+      if (node.contains(other) || other.contains(node)) continue;
+      const width = Math.min(p.right, q.right) - Math.max(p.left, q.left);
+      const height = Math.min(p.bottom, q.bottom) - Math.max(p.top, q.top);
+      if (width > 1 && height > 1) found.push(`${name(a)} and ${name(b)}`);
+    }
+  }
+  for (const e of new Set(boxes.map(([element]) => element))) {
     if (e.scrollWidth > e.clientWidth + 1 && e.clientWidth && !e.matches("input, select")) {
       found.push(`${name(e)} does not fit`);
     }
@@ -67,4 +77,4 @@ OVERLAPS = """() => {
   if (document.documentElement.scrollWidth > innerWidth) found.push("the page is too wide");
   return found;
 }"""
-"""Returns what is laid over something else, or cut; the count of what was looked at is LEAVES."""
+"""Returns what is laid over something else, or cut."""

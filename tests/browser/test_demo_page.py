@@ -52,7 +52,9 @@ def test_each_fault_gives_its_reaction_and_clearing_lets_it_drive_again() -> Non
 
 def is_driving(page: Page) -> None:
     page.wait_for_selector("#lamps-island li:text-is('ACTIVE')[aria-current=true]")
-    page.wait_for_function("parseFloat(document.getElementById('now-speed').textContent) > 0.5")
+    page.wait_for_function(
+        "() => parseFloat(document.getElementById('now-speed').textContent) > 0.5"
+    )
 
 
 def break_it(page: Page, fault: str) -> None:
@@ -75,7 +77,7 @@ def break_it(page: Page, fault: str) -> None:
 def heal(page: Page) -> None:
     """Clear every fault and arm the island until it is."""
     page.click('[data-key="clear"]')
-    page.wait_for_function("!document.querySelector('#buttons [aria-pressed=true]')")
+    page.wait_for_function("() => !document.querySelector('#buttons [aria-pressed=true]')")
     for _ in range(30):
         if page.inner_text("#lamps-island [aria-current=true]") == "ACTIVE":
             return

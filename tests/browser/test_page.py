@@ -49,7 +49,7 @@ def test_values_on_the_page_are_those_on_the_domain(domain_id: int, scheme: str)
         open_page(address, color_scheme=scheme) as (page, complaints),
     ):
         page.wait_for_selector("#verdict[data-is=good]")
-        page.wait_for_function("document.getElementById('now-tick').textContent === '1.25'")
+        page.wait_for_function("() => document.getElementById('now-tick').textContent === '1.25'")
         shown = {name: page.inner_text(f"#now-{name}") for name in ("lateral", "target", "stop")}
         assert shown == {"lateral": "0.063", "target": "6.50", "stop": "47.3"}
         assert page.inner_text("#lamps-island [aria-current=true]") == "ACTIVE"
@@ -94,11 +94,11 @@ def test_nothing_overlaps_at_any_width(domain_id: int) -> None:
         for width, height in SIZES:
             page.set_viewport_size({"width": width, "height": height})
             page.wait_for_function(
-                "[...document.querySelectorAll('.plot canvas')].every("
+                "() => [...document.querySelectorAll('.plot canvas')].every("
                 "(c) => c.getBoundingClientRect().right <= innerWidth)"
             )
             assert page.evaluate(OVERLAPS) == [], width
-        page.evaluate("document.getElementById('why').style.marginTop = '-60px'")
+        page.evaluate("document.getElementById('where').style.marginTop = '-12px'")
         assert page.evaluate(OVERLAPS), "the check itself sees an overlap"
         assert complaints == []
 

@@ -30,7 +30,10 @@ _ISLAND, _KERNELS = Need(1100, 300, kernels=True), Need(600, 300, kernels=True)
 
 COMMANDS = (
     Command(
-        "demo", "demo", "Watch the island drive a vehicle: three processes, one live view.", _ISLAND
+        "demo",
+        "demo",
+        "Watch the island drive a vehicle, in the terminal and in the browser.",
+        _ISLAND,
     ),
     Command("run", "run", "Run the safety island.", _ISLAND),
     Command(

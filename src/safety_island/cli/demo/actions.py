@@ -35,13 +35,13 @@ FREEZE, STILL, CLEAR, ARM_AGAIN = "freeze", "still", "clear", "arm"
 HEALS = (CLEAR, ARM_AGAIN)
 BUTTONS: Mapping[str, str] = {
     NAN: "NaN odometry",
-    JUMP: f"Trajectory jumps {JUMP_M:g} m",
+    JUMP: "Trajectory jumps",
     **{f"{FREEZE} {topic}": f"Freeze {topic}" for topic in FREEZABLE},
     KILL: "Kill the bridge",
     f"{STILL} {BRIDGE}": "Bridge hangs",
     f"{STILL} {VEHICLE}": "Main compute hangs",
     SECOND: "Second island",
-    MODE: "Disengage or engage",
+    MODE: "Disengage/engage",
     CLEAR: "Clear all faults",
     ARM_AGAIN: "Arm the island",
 }

@@ -137,6 +137,7 @@ function show(end) {
 function frame(at) {
   requestAnimationFrame(frame);
   if (!page.view) return;
+  if (axis.offset !== null) page.view.expire(liveEnd());
   page.view.draw();
   if (at - drawnAt < PLOT_EVERY_MS || document.hidden) return;
   const end = axis.end ?? (page.isLive ? liveEnd() : page.store.newest);

@@ -5,6 +5,7 @@ import { colour } from "./look.js";
 
 const TRAIL = 6000; // places that are kept
 const SCALES = [3, 120]; // pixels a metre
+const PATH_S = 2, PREDICTED_S = 1; // ages at which they are old
 const FOLLOW_AT = 0.42; // the vehicle's place when followed, from the left
 
 export class TopView {
@@ -12,6 +13,7 @@ export class TopView {
     this.canvas = canvas;
     this.vehicle = vehicle;
     this.path = this.predicted = null;
+    this.pathIsOld = false;
     this.pose = null;
     this.trail = [];
     this.stopDist = NaN;
@@ -159,6 +161,7 @@ export class TopView {
   drawPath() {
     if (!this.path?.x.length) return;
     const { ctx } = this;
+    ctx.globalAlpha = this.pathIsOld ? 0.35 : 1;
     this.trace(this.path);
     ctx.strokeStyle = colour("road");
     ctx.lineWidth = this.width + 1.2;
@@ -168,6 +171,17 @@ export class TopView {
     ctx.setLineDash([8 / this.scale, 7 / this.scale]);
     ctx.stroke();
     ctx.setLineDash([]);
+    ctx.globalAlpha = 1;
+  }
+
+  // What is no longer published must not look as if it were: the prediction goes, the path pales.
+  expire(now) {
+    const isOld = Boolean(this.path) && now - this.path.t > PATH_S;
+    const isGone = Boolean(this.predicted) && now - this.predicted.t > PREDICTED_S;
+    if (isOld === this.pathIsOld && !isGone) return;
+    this.pathIsOld = isOld;
+    if (isGone) this.predicted = null;
+    this.isStale = true;
   }
 
   drawTrail() {

@@ -4,6 +4,7 @@
 import { clock, colour, number } from "./look.js";
 
 const MS = 1e3, PER_CENT = 100;
+const RIGHT = 42; // room for a second axis, kept free where there is none: all share one time axis
 const DECADES = [0.1, 1, 10, 100, 1000];
 
 // Each: title, unit of the left axis, series. A series: field, label, colour, unit; `dash` for what
@@ -118,11 +119,11 @@ export class Plots {
     ];
     if (plot.right) {
       scales.right = { range: (u, low, high) => range(low, high, { symmetric: plot.symmetricRight }) };
-      axes.push(axis({ scale: "right", side: 1, size: 40, space: 26, grid: { show: false } }));
+      axes.push(axis({ scale: "right", side: 1, size: RIGHT, space: 26, grid: { show: false } }));
     }
     return {
       width: Math.max(box.clientWidth, 100), height: Math.max(box.clientHeight, 60),
-      padding: [6, plot.right ? 0 : 12, 0, 0], legend: { show: false }, scales, axes,
+      padding: [6, plot.right ? 0 : RIGHT, 0, 0], legend: { show: false }, scales, axes,
       cursor: { sync: { key: "time", setSeries: false }, drag: { x: false, y: false }, points: { size: 6 }, y: false },
       series: [{}, ...plot.series.map((s) => ({
         scale: s.right ? "right" : "y", stroke: () => colour(s.colour), width: s.dash ? 1.6 : 2,
