@@ -13,7 +13,7 @@ from safety_island.dds.topics import ARM, STATUS
 from safety_island.life_cycle.state import State
 from safety_island.messages.arm import ArmResult
 from safety_island.messages.status_fields import Status
-from tests.cli.status.samples import STALE, FakeIsland, sample
+from tests.status.samples import STALE, FakeIsland, sample
 
 Capture = pytest.CaptureFixture[str]
 

@@ -21,10 +21,10 @@ from safety_island.cli.json_keys import BRIDGE, COMMANDS, MAIN_COMPUTE, RUN, WHY
 from safety_island.cli.json_page import PAGE, main, render
 from safety_island.cli.jsonlines import plain
 from safety_island.cli.main import main as island
-from safety_island.cli.status.why import why_values
 from safety_island.sim.courses import load_course
 from safety_island.sim.world import World
-from tests.cli.status.samples import sample
+from safety_island.status.why import why_values
+from tests.status.samples import sample
 
 ROOT = Path(__file__).parents[2]
 KINDS: dict[str, tuple[type, ...]] = {

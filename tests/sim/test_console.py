@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from safety_island.sim.console import Console
+from safety_island.sim.console import JUMP_M, Console
 
 
 class Pipe:
@@ -65,6 +65,13 @@ def test_faults(pipe: Pipe) -> None:
     assert pipe.main_compute.frozen == {"trajectory"}
     pipe.type("number\n")
     assert not pipe.main_compute.nan_odometry
+
+
+def test_the_trajectory_jumps_and_returns(pipe: Pipe) -> None:
+    pipe.type("jump\n")
+    assert pipe.main_compute.trajectory_offset == JUMP_M
+    pipe.type("return\n")
+    assert pipe.main_compute.trajectory_offset == 0.0
 
 
 def test_end_of_the_drive_and_of_the_input(pipe: Pipe) -> None:

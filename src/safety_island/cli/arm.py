@@ -40,8 +40,8 @@ island is armed now, or was.
 def execute(arguments: argparse.Namespace) -> int:
     """Ask, wait for the answer and print it; return the exit code."""
     from safety_island.cli.status.receive import StatusReader
-    from safety_island.cli.status.why import why
     from safety_island.messages.arm import ArmResult
+    from safety_island.status.why import why
 
     with StatusReader(arguments, NODE_NAME) as reader:
         status = _ask(reader, arguments.timeout)

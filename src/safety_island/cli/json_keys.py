@@ -237,9 +237,22 @@ WHY = Lines(
     },
 )
 
+MONITOR = Lines(
+    {
+        "address": Event("once, when the page is served", ("address", "port")),
+        "press": Event("a button of the page, with `--console`", ("key",)),
+    },
+    {
+        "address": Key(TEXT, "of the page, with the token where one is needed"),
+        "port": Key(INTEGER, "that is served on"),
+        "key": Key(TEXT, "name of the button"),
+    },
+)
+
 COMMANDS = {
     "island run --json": RUN,
     "island main-compute --json": MAIN_COMPUTE,
     "island bridge --json": BRIDGE,
     "island status --why --json": WHY,
+    "island monitor --json": MONITOR,
 }

@@ -47,8 +47,9 @@ engaged when commands come. When they stop coming the vehicle brakes, as Autowar
         "--console",
         action="store_true",
         help="obey lines on standard input: engage, disengage, stay (engaged when commands stop "
-        "coming, as Autoware does), nan and number (the odometry), freeze TOPIC, thaw TOPIC, end; "
-        "the topics go on after the drive, until the input is closed",
+        "coming, as Autoware does), nan and number (the odometry), jump and return (the "
+        "trajectory), freeze TOPIC, thaw TOPIC, end; the topics go on after the drive, until the "
+        "input is closed",
     )
     options.add_network(parser)
     options.add_duration(parser, 0.0)

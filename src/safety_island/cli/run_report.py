@@ -9,7 +9,6 @@ from typing import Any, Protocol
 
 from safety_island.cli.jsonlines import JsonLines
 from safety_island.cli.run_can import CanSide
-from safety_island.cli.status.names import guard_limits_of, input_name, verdict_of
 from safety_island.cli.tick_times import TickTimes
 from safety_island.control.records import Records
 from safety_island.control.status import LongitudinalState, MpcStatus
@@ -18,6 +17,7 @@ from safety_island.node.command_check import CommandCheck
 from safety_island.node.input import Input
 from safety_island.node.input_set import InputSet
 from safety_island.platform import Clock, Logger
+from safety_island.status.names import guard_limits_of, input_name, verdict_of
 
 
 class Observed(Protocol):

@@ -11,9 +11,6 @@ from pathlib import Path
 from typing import Any
 
 from safety_island.cli.status.docs import member_docs, message_fields
-from safety_island.cli.status.holds import EXPLANATIONS as HOLDS
-from safety_island.cli.status.holds import MPC_EXPLANATIONS
-from safety_island.cli.status.names import GUARD_LIMITS
 from safety_island.control.status import ControllerLimit
 from safety_island.gate.reason import EXPLANATIONS as SAMPLE_REASONS
 from safety_island.gate.warning import EXPLANATIONS as WARNINGS
@@ -21,6 +18,9 @@ from safety_island.life_cycle.reason import EXPLANATIONS as REASONS
 from safety_island.life_cycle.state import State
 from safety_island.messages.arm import ARM, ArmResult
 from safety_island.messages.status import INPUT_STATUS, STATUS
+from safety_island.status.holds import EXPLANATIONS as HOLDS
+from safety_island.status.holds import MPC_EXPLANATIONS
+from safety_island.status.names import GUARD_LIMITS
 
 PAGE = "docs/status.md"
 INTRODUCTION = """\

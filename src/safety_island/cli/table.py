@@ -30,11 +30,20 @@ _ISLAND, _KERNELS = Need(1100, 300, kernels=True), Need(600, 300, kernels=True)
 
 COMMANDS = (
     Command(
-        "demo", "demo", "Watch the island drive a vehicle: three processes, one live view.", _ISLAND
+        "demo",
+        "demo",
+        "Watch the island drive a vehicle, in the terminal and in the browser.",
+        _ISLAND,
     ),
     Command("run", "run", "Run the safety island.", _ISLAND),
     Command(
         "status", "status", "Show what the island does, and why nothing is published.", _ONE_DOMAIN
+    ),
+    Command(
+        "monitor",
+        "monitor",
+        "Serve a live page of what the island does, for a browser.",
+        _ONE_DOMAIN,
     ),
     Command("arm", "arm", "Ask a silent island to send commands again.", _ONE_DOMAIN),
     Command("bridge", "bridge", "Forward topics between two DDS domains.", _TWO_DOMAINS),

@@ -16,7 +16,10 @@ if TYPE_CHECKING:
 FREEZABLE = tuple(topic.key for topic in (TRAJECTORY, ODOMETRY, STEERING, ACCELERATION))
 """Topics that can be frozen, by their keys."""
 
-WORDS = "engage, disengage, stay, nan, number, freeze TOPIC, thaw TOPIC, end"
+JUMP_M = 6.0
+"""How far [m] a trajectory jumps: farther than any planner would and the controllers follow."""
+
+WORDS = "engage, disengage, stay, nan, number, jump, return, freeze TOPIC, thaw TOPIC, end"
 """What ``Console`` understands."""
 
 
@@ -24,8 +27,9 @@ class Console:
     """Reads commands, one a line, without ever waiting for them.
 
     ``engage`` and ``disengage`` autonomous mode; ``stay`` in it when commands stop coming;
-    ``nan`` and ``number``: the position of the odometry; ``freeze`` and ``thaw`` a topic;
-    ``end`` the drive. The end of the input ends the program.
+    ``nan`` and ``number``: the position of the odometry; ``jump`` and ``return``: the trajectory,
+    by JUMP_M to the left; ``freeze`` and ``thaw`` a topic; ``end`` the drive. The end of the input
+    ends the program.
     """
 
     def __init__(self, say: Callable[[str], None], descriptor: int = 0) -> None:
@@ -58,6 +62,10 @@ class Console:
                 main_compute.world.stay_engaged()
             case ["nan" | "number" as word]:
                 main_compute.nan_odometry = word == "nan"
+            case ["jump"]:
+                main_compute.trajectory_offset = JUMP_M
+            case ["return"]:
+                main_compute.trajectory_offset = 0.0
             case ["freeze", key] if key in FREEZABLE:
                 main_compute.frozen.add(key)
             case ["thaw", key] if key in FREEZABLE:

@@ -80,6 +80,8 @@ class MainCompute:
         self.refused = 0  # commands that are no Control, or not finite
         self.nan_odometry = False
         """Whether the position that is published is NaN."""
+        self.trajectory_offset = 0.0
+        """How far [m] to the vehicle's left the published trajectory is from the planned one."""
         self.frozen: set[str] = set()
         """Topics, by their keys, on which nothing is published."""
         self._transport = transport
@@ -134,7 +136,13 @@ class MainCompute:
         if topics.TRAJECTORY.key in self.frozen:
             return
         stamp = Time.from_nanoseconds(self.clock.wall_ns())
-        self._trajectory.write(encode_trajectory(stamp, MAP, self.world.planner.window()))
+        points = self.world.planner.window()
+        if self.trajectory_offset:
+            yaw = self.world.plant.yaw
+            points = points.copy()
+            points["x"] -= self.trajectory_offset * math.sin(yaw)
+            points["y"] += self.trajectory_offset * math.cos(yaw)
+        self._trajectory.write(encode_trajectory(stamp, MAP, points))
 
     def close(self) -> None:
         """Leave the domain."""

@@ -7,10 +7,11 @@ from typing import Any
 
 import pytest
 
-from safety_island.cli.demo.actions import HELP, Actions, Reactions, Recipes
+from safety_island.cli.demo.actions import BUTTONS, HELP, Actions, Reactions, Recipes
 from safety_island.cli.demo.child import Child
 from safety_island.cli.demo.events import ARM, BRIDGE, SECOND_ISLAND, VEHICLE, DemoState
 from safety_island.cli.parameters import read_parameters
+from safety_island.sim.console import FREEZABLE
 from tests.cli.demo.samples import STATUS, TICK
 
 
@@ -23,6 +24,12 @@ class FakeChild(Child):
 
     def say(self, line: str) -> None:
         self.lines.append(line)
+
+    def stand_still(self) -> None:
+        self.lines.append("(stands still)")
+
+    def go_on(self) -> None:
+        self.lines.append("(goes on)")
 
 
 class FakeSession:
@@ -190,3 +197,56 @@ def test_recovery_and_the_vehicle_are_told() -> None:
 
 def test_changes_long_after_a_key_are_no_reactions() -> None:
     assert reaction({"state": "SILENT", "reason": "PARTITION"}, {}, 31.0) == []
+
+
+def active(actions: Actions) -> list[str]:
+    return [str(button["key"]) for button in actions.buttons() if button["active"]]
+
+
+@pytest.mark.parametrize("name", [name for name in BUTTONS if name not in ("clear", "arm", "mode")])
+def test_each_fault_of_the_page_lasts_until_it_is_pressed_again(
+    name: str, actions: Actions, session: FakeSession
+) -> None:
+    assert active(actions) == []
+    assert actions.click(name)
+    assert active(actions) == [name]
+    assert session.state.was_acted_on
+    assert actions.click(name)
+    assert active(actions) == []
+    assert all(text.startswith("page: ") for text in texts(session))
+
+
+def test_every_button_acts_and_nothing_else_does(actions: Actions, session: FakeSession) -> None:
+    for name in BUTTONS:
+        assert actions.click(name)
+    assert len(session.state.events) == len(BUTTONS)
+    for name in ("q", "k", "", "freeze control", "still island"):
+        assert not actions.click(name)
+    assert len(session.state.events) == len(BUTTONS)
+
+
+def test_clearing_takes_every_fault_away(actions: Actions, session: FakeSession) -> None:
+    actions.click("clear")
+    assert texts(session) == ["page: there is no fault to clear"]
+    faults = [name for name in BUTTONS if name not in ("clear", "arm", "mode")]
+    for name in faults:
+        actions.click(name)
+    assert session.find(BRIDGE) is None
+    actions.click("clear")
+    assert active(actions) == []
+    assert session.find(BRIDGE) is not None
+    assert session.find(SECOND_ISLAND) is None
+    thawed = {f"thaw {topic}" for topic in FREEZABLE}
+    assert thawed | {"number", "return", "(goes on)"} <= set(session.vehicle.lines)
+
+
+def test_what_stands_still_goes_on(actions: Actions, session: FakeSession) -> None:
+    actions.click("still main-compute")
+    actions.click("still main-compute")
+    assert session.vehicle.lines == ["stay", "(stands still)", "(goes on)"]
+
+
+def test_a_key_thaws_what_a_button_froze(actions: Actions, session: FakeSession) -> None:
+    actions.click("freeze steering")
+    actions.press("f")
+    assert active(actions) == []

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The demo as a person starts it: three processes on loopback."""
+"""The demo as a person starts it: its processes on loopback."""
 
 from __future__ import annotations
 
@@ -51,13 +51,38 @@ def test_death_of_a_process_is_told_and_ends_all(victim: str) -> None:
             if "m/s" in line:
                 break
         children = children_of(process.pid)
-        assert set(children) == {"run", "bridge", "main-compute"}
+        assert set(children) == {"run", "bridge", "main-compute", "monitor"}
         os.kill(children[victim], signal.SIGKILL)
         _, error = process.communicate(timeout=60)
     name = {"run": "island"}.get(victim, victim)
     assert process.returncode == 1
     assert f"island: error: {name} died (signal SIGKILL)" in error
     assert not any(Path(f"/proc/{pid}").exists() for pid in children.values())
+
+
+def test_death_of_the_page_is_told_and_touches_nothing() -> None:
+    command = [*DEMO, "--plain", "--duration", "12"]
+    with subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as process:
+        assert process.stdout is not None
+        for line in process.stdout:
+            if "the page: http" in line:
+                break
+        os.kill(children_of(process.pid)["monitor"], signal.SIGKILL)
+        output, error = process.communicate(timeout=120)
+    assert "the page has ended (signal SIGKILL); the drive goes on without it" in output
+    assert "  ok  stopped once" in output, output + error
+
+
+def test_without_a_page() -> None:
+    command = [*DEMO, "--plain", "--no-page"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        process.stdout.readline()
+        assert set(children_of(process.pid)) <= {"run", "bridge", "main-compute"}
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=60)
 
 
 def test_killed_demo_leaves_nobody_behind() -> None:

@@ -17,7 +17,7 @@ from safety_island.dds.config import URI, DdsConfig
 from safety_island.dds.participant import Participant
 from safety_island.dds.topics import STATUS
 from safety_island.life_cycle.reason import Reason
-from tests.cli.status.samples import NOT_FINITE, ODOMETRY, STALE, FakeIsland, sample
+from tests.status.samples import NOT_FINITE, ODOMETRY, STALE, FakeIsland, sample
 
 Capture = pytest.CaptureFixture[str]
 LONG = ["--timeout", "20"]

@@ -17,9 +17,9 @@ from safety_island.life_cycle.state import State
 from safety_island.messages import codec
 from safety_island.messages.status import STATUS, decode_status
 from safety_island.messages.status_fields import Status
-from tests.cli.status.samples import NOT_FINITE, ODOMETRY, STALE, TRAJECTORY, sample
 from tests.messages.samples import status_of_nothing
 from tests.messages.strategies import messages
+from tests.status.samples import NOT_FINITE, ODOMETRY, STALE, TRAJECTORY, sample
 
 BAD = sample(
     {ODOMETRY: NOT_FINITE, TRAJECTORY: {"warnings": 4}},

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``island demo``: three processes, one live view, no configuration."""
+"""``island demo``: the processes of a drive, one live view, one page, no configuration."""
 
 from __future__ import annotations
 
@@ -16,11 +16,18 @@ from tempfile import TemporaryDirectory
 from safety_island.cli import options
 from safety_island.cli.demo.actions import Actions, Reactions, Recipes
 from safety_island.cli.demo.child import Child
-from safety_island.cli.demo.children import arm_child, bridge_child, island_child, vehicle_child
+from safety_island.cli.demo.children import (
+    arm_child,
+    bridge_child,
+    island_child,
+    page_child,
+    vehicle_child,
+)
 from safety_island.cli.demo.events import ISLAND, SECOND_ISLAND, DemoState
 from safety_island.cli.demo.judge import Condition, conditions
 from safety_island.cli.demo.keyboard import Keyboard
 from safety_island.cli.demo.machine_load import other_work, usage
+from safety_island.cli.demo.page import PageLines
 from safety_island.cli.demo.plot import plot
 from safety_island.cli.demo.record import Recorder, open_output
 from safety_island.cli.demo.session import Session
@@ -50,11 +57,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
         """
 Watch the safety island drive a vehicle. Three processes on this machine, over loopback: a main
 compute with a planner and a vehicle on one DDS domain, the island on another, a bridge between
-them. Exit code 0 only when the vehicle stayed on the course, reached its speed, stopped where the
-planner said, and no tick was missed. In a terminal keys disturb the drive and show the reaction:
-space disengages and engages, k kills the bridge, n makes the odometry NaN, f freezes a topic, 2
-starts a second island (each of them once more clears it), a arms the island, q ends. A drive that
-keys disturbed is judged by what it kept all the same.
+them. A fourth serves a page for the browser, with plots, and buttons that break things; nothing
+depends on it. Exit code 0 only when the vehicle stayed on the course, reached its speed, stopped
+where the planner said, and no tick was missed. In a terminal keys disturb the drive and show the
+reaction: space disengages and engages, k kills the bridge, n makes the odometry NaN, f freezes a
+topic, 2 starts a second island (each of them once more clears it), a arms the island, q ends. A
+drive that keys disturbed is judged by what it kept all the same.
 """,
         ("island demo", "the s-curve, about a minute"),
         ("island demo --course u-turn --period 0.03", "another course, at Autoware's own period"),
@@ -108,6 +116,14 @@ keys disturbed is judged by what it kept all the same.
     parser.add_argument(
         "--plain", action="store_true", help="plain lines instead of a live view, no keys"
     )
+    parser.add_argument(
+        "--no-page", action="store_true", help="serve no page for the browser (nor with --json)"
+    )
+    parser.add_argument(
+        "--no-open",
+        action="store_true",
+        help="print the page's address alone; else a terminal on a desktop opens it too",
+    )
     options.add_json(parser, "the summary")
 
 
@@ -147,13 +163,16 @@ def _run(
         limit_s = arguments.duration + GRACE_S if arguments.duration else math.inf
         with _display(arguments, domains, has_keys=has_keys) as show:
             children = [recipe.island(), recipe.bridge(), recipe.vehicle()]
+            if recipe.has_page:
+                children.append(recipe.page())
             session = Session(children, show, limit_s, stop)
             session.state.on_status.append(recorder)
+            session.opens_page = has_keys and not arguments.no_open
+            _connect(session, recipe, parameters)
             with ExitStack() as stack:
                 if has_keys and isinstance(show, TerminalShow):
                     keyboard = Keyboard(sys.stdin.fileno(), show.suspend, show.resume)
                     session.keyboard = stack.enter_context(keyboard)
-                    _connect_keys(session, recipe, parameters)
                 session.run()
     state = session.state
     if arguments.plot is not None:
@@ -190,12 +209,20 @@ class _Recipe:
     ) -> None:
         self._arguments, self._folder = arguments, folder
         self._domains = domains
+        self.has_page = not (arguments.no_page or arguments.json)
 
     def island(self, name: str = ISLAND) -> Child:
-        """The safety island, or another one of that name."""
+        """The safety island, or another one of that name; the page shows the path it predicts."""
         given = self._arguments
         domain, tag = self._domains[1], given.domain_tag
-        return island_child(domain, given.params, given.period, given.target, tag, name)
+        debug = self.has_page and name == ISLAND
+        settings = (domain, given.params, given.period, given.target, tag, name)
+        return island_child(*settings, debug_topics=debug)
+
+    def page(self) -> Child:
+        """The monitor that serves the page."""
+        given = self._arguments
+        return page_child(self._domains[1], given.params, given.domain_tag)
 
     def second_island(self) -> Child:
         """A second island on the island's domain."""
@@ -214,9 +241,11 @@ class _Recipe:
         return arm_child(self._domains[1], self._arguments.domain_tag)
 
 
-def _connect_keys(session: Session, recipe: _Recipe, parameters: IslandParameters) -> None:
+def _connect(session: Session, recipe: _Recipe, parameters: IslandParameters) -> None:
+    """Let keys and buttons act, and show what comes of it."""
     actions = Actions(session, Recipes(recipe.bridge, recipe.second_island, recipe.arm))
     reactions = Reactions(session.state, parameters)
+    page = PageLines(session, actions.buttons)
 
     def on_keys(keys: str) -> None:
         for key in keys:
@@ -224,7 +253,16 @@ def _connect_keys(session: Session, recipe: _Recipe, parameters: IslandParameter
             if actions.press(key):
                 reactions.pressed(-math.inf if key == "q" else now)
 
-    session.on_keys, session.look = on_keys, reactions.look
+    def on_button(name: str) -> None:
+        now = time.monotonic()
+        if actions.click(name):
+            reactions.pressed(now)
+
+    def look(now: float) -> None:
+        reactions.look(now)
+        page.look()
+
+    session.on_keys, session.on_button, session.look = on_keys, on_button, look
 
 
 def _has_keys(arguments: argparse.Namespace) -> bool:

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the keys of the live view do, and the reactions that are seen."""
+"""What keys and buttons do to the drive, and the reactions that are seen."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Protocol
 
 from safety_island.cli.demo.child import Child
@@ -15,7 +16,7 @@ from safety_island.life_cycle.reason import Reason
 from safety_island.node.explain import explain
 from safety_island.node.inputs import INPUTS
 from safety_island.params import IslandParameters
-from safety_island.sim.console import FREEZABLE
+from safety_island.sim.console import FREEZABLE, JUMP_M
 
 HELP: Mapping[str, str] = {
     " ": "disengage/engage",
@@ -27,6 +28,24 @@ HELP: Mapping[str, str] = {
     "q": "end",
 }
 """Every key and what it does; the fault keys clear their fault when they are pressed again."""
+
+MODE, KILL, NAN, JUMP, SECOND = "mode", "kill bridge", "nan", "jump", "second island"
+FREEZE, STILL, CLEAR, ARM_AGAIN = "freeze", "still", "clear", "arm"
+"""Names of the page's buttons, or their first word."""
+HEALS = (CLEAR, ARM_AGAIN)
+BUTTONS: Mapping[str, str] = {
+    NAN: "NaN odometry",
+    JUMP: "Trajectory jumps",
+    **{f"{FREEZE} {topic}": f"Freeze {topic}" for topic in FREEZABLE},
+    KILL: "Kill the bridge",
+    f"{STILL} {BRIDGE}": "Bridge hangs",
+    f"{STILL} {VEHICLE}": "Main compute hangs",
+    SECOND: "Second island",
+    MODE: "Disengage/engage",
+    CLEAR: "Clear all faults",
+    ARM_AGAIN: "Arm the island",
+}
+"""Every button of the page and what is written on it; a fault's second press clears it."""
 
 JITTER_S = 0.08
 """What a bound allows for wake-ups and transport [s], as the catalogue of faults does."""
@@ -66,33 +85,68 @@ class Recipes:
 
 
 class Actions:
-    """Obeys keys; every one is an event line of the state."""
+    """Obeys keys and buttons; every one is an event line of the state."""
 
     def __init__(self, processes: Processes, recipes: Recipes) -> None:
         self._processes, self._recipes = processes, recipes
         self._state = processes.state
-        self._is_nan = False
-        self._frozen: str | None = None
+        self._is_nan = self._has_jumped = False
+        self._frozen: list[str] = []
+        self._still: list[str] = []
         self._next_topic = 0
         self._has_faults = False
-
-    def press(self, key: str) -> bool:
-        """Obey a key; return whether it is one."""
-        acts: dict[str, Callable[[], str]] = {
+        self._acts: dict[str, Callable[[], str]] = {
+            MODE: self._engage,
+            KILL: self._bridge,
+            NAN: self._nan,
+            JUMP: self._jump,
+            SECOND: self._second,
+            ARM_AGAIN: self._arm,
+            CLEAR: self._clear,
+            **{f"{FREEZE} {topic}": partial(self._freeze, topic) for topic in FREEZABLE},
+            **{f"{STILL} {name}": partial(self._stand_still, name) for name in (BRIDGE, VEHICLE)},
+        }
+        self._keys = {
             " ": self._engage,
             "k": self._bridge,
             "n": self._nan,
-            "f": self._freeze,
+            "f": self._freeze_next,
             "2": self._second,
             "a": self._arm,
             "q": self._end,
         }
-        act = acts.get(key)
+
+    def press(self, key: str) -> bool:
+        """Obey a key; return whether it is one."""
+        act = self._keys.get(key)
         if act is None:
             return False
         shown = "space" if key == " " else key
         self._state.add_event(f"key {shown}: {act()}")
         return True
+
+    def click(self, name: str) -> bool:
+        """Obey a button of the page; return whether it is one."""
+        act = self._acts.get(name)
+        if act is None:
+            return False
+        self._state.add_event(f"page: {act()}")
+        return True
+
+    def buttons(self) -> list[dict[str, object]]:
+        """Return the buttons of the page, each with whether what it causes lasts."""
+        lasting = {
+            KILL: self._has_faults and self._processes.find(BRIDGE) is None,
+            NAN: self._is_nan,
+            JUMP: self._has_jumped,
+            SECOND: self._processes.find(SECOND_ISLAND) is not None,
+            **{f"{FREEZE} {topic}": True for topic in self._frozen},
+            **{f"{STILL} {name}": True for name in self._still},
+        }
+        return [
+            {"key": key, "label": label, "active": lasting.get(key, False), "clears": key in HEALS}
+            for key, label in BUTTONS.items()
+        ]
 
     def _engage(self) -> str:
         self._begin_fault()  # how the drive goes from here on is a person's doing
@@ -108,8 +162,23 @@ class Actions:
         if bridge is None:
             self._processes.add(self._recipes.bridge())
             return "bridge started anew"
+        if BRIDGE in self._still:
+            self._still.remove(BRIDGE)
         self._processes.drop(bridge, kill=True)
         return "bridge killed"
+
+    def _stand_still(self, name: str) -> str:
+        self._begin_fault()
+        child = self._processes.find(name)
+        if child is None:
+            return f"{name} does not run"
+        if name in self._still:
+            self._still.remove(name)
+            child.go_on()
+            return f"{name} goes on"
+        self._still.append(name)
+        child.stand_still()
+        return f"{name} stands still"
 
     def _nan(self) -> str:
         self._begin_fault()
@@ -117,14 +186,28 @@ class Actions:
         self._vehicle("nan" if self._is_nan else "number")
         return "odometry is NaN" if self._is_nan else "odometry is a number again"
 
-    def _freeze(self) -> str:
+    def _jump(self) -> str:
         self._begin_fault()
-        if self._frozen is not None:
-            topic, self._frozen = self._frozen, None
+        self._has_jumped = not self._has_jumped
+        self._vehicle("jump" if self._has_jumped else "return")
+        to = f"{JUMP_M:g} m to the left" if self._has_jumped else "back to its place"
+        return f"trajectory jumps {to}"
+
+    def _freeze_next(self) -> str:
+        """Freeze one topic after the other; each is thawed before the next."""
+        if self._frozen:
+            return self._freeze(self._frozen[-1])
+        topic = FREEZABLE[self._next_topic]
+        self._next_topic = (self._next_topic + 1) % len(FREEZABLE)
+        return self._freeze(topic)
+
+    def _freeze(self, topic: str) -> str:
+        self._begin_fault()
+        if topic in self._frozen:
+            self._frozen.remove(topic)
             self._vehicle(f"thaw {topic}")
             return f"{topic} is published again"
-        topic = self._frozen = FREEZABLE[self._next_topic]
-        self._next_topic = (self._next_topic + 1) % len(FREEZABLE)
+        self._frozen.append(topic)
         self._vehicle(f"freeze {topic}")
         return f"{topic} is frozen: published no more"
 
@@ -136,6 +219,11 @@ class Actions:
             return "second island started"
         self._processes.drop(second)
         return "second island ended"
+
+    def _clear(self) -> str:
+        """Take every fault away; what it caused is left to the island and to whoever arms it."""
+        cleared = [self._acts[str(b["key"])]() for b in self.buttons() if b["active"]]
+        return "; ".join(cleared) or "there is no fault to clear"
 
     def _arm(self) -> str:
         if self._processes.find(ARM) is None:

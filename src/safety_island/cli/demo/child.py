@@ -98,9 +98,18 @@ class Child:
         return self.process.poll()
 
     def tell_to_stop(self) -> None:
-        """Ask it to end; one that has ended is left alone."""
+        """Ask it to end, also when it stands still; one that has ended is left alone."""
         if self.exit_code is None:
             self.process.send_signal(signal.SIGTERM)
+            self.go_on()
+
+    def stand_still(self) -> None:
+        """Stop it in its tracks, as a machine that hangs does."""
+        self.process.send_signal(signal.SIGSTOP)
+
+    def go_on(self) -> None:
+        """Let it go on from where it stood still."""
+        self.process.send_signal(signal.SIGCONT)
 
     def kill(self) -> None:
         """End it at once."""

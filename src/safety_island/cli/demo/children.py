@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The three processes of the demo and their command lines."""
+"""The processes of the demo and their command lines."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from safety_island.cli.demo.child import Child
-from safety_island.cli.demo.events import ARM, BRIDGE, ISLAND, VEHICLE
+from safety_island.cli.demo.events import ARM, BRIDGE, ISLAND, PAGE, VEHICLE
 from safety_island.dds.topics import BRIDGED, MAIN_COMPUTE_DOMAIN
 
 LOOPBACK = ("--interface", "lo")
@@ -20,12 +20,23 @@ def island_child(
     target: str = "posix",
     tag: str | None = None,
     name: str = ISLAND,
+    *,
+    debug_topics: bool = False,
 ) -> Child:
-    """Return the safety island, not started."""
+    """Return the safety island, not started; its debug topics are for the page."""
     run = ["run", "--domain", str(domain), "--target", target, "--params", *params]
     if period_s is not None:
         run += ["--period", repr(period_s)]
+    if debug_topics:
+        run.append("--debug-topics")
     return Child(name, [*run, *_tagged(tag), *LOOPBACK, "--json"])
+
+
+def page_child(domain: int, params: Sequence[str], tag: str | None = None) -> Child:
+    """Return the monitor that serves the page, not started."""
+    serve = ["monitor", "--domain", str(domain), "--params", *params]
+    arguments = [*serve, *_tagged(tag), *LOOPBACK, "--console", "--json"]
+    return Child(PAGE, arguments, is_controlled=True)
 
 
 def bridge_child(domains: tuple[int, int], folder: Path, tag: str | None = None) -> Child:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the demo knows, fed by the JSON lines of its three processes."""
+"""What the demo knows, fed by the JSON lines of its processes."""
 
 from __future__ import annotations
 
@@ -12,6 +12,8 @@ Event = Mapping[str, Any]
 ISLAND, BRIDGE, VEHICLE = "island", "bridge", "main-compute"
 SECOND_ISLAND, ARM = "second island", "arm"
 """What a key starts."""
+PAGE = "monitor"
+"""What serves the page: nothing of the drive depends on it."""
 
 MOST_TRAIL = 4000
 """Places of the vehicle that are kept; beyond that every other one is left out."""
@@ -40,6 +42,10 @@ class DemoState:
     """Messages that the bridge has passed on."""
     first_control_s: float | None = None
     """From the start of the island's process to its first command."""
+    page: str = ""
+    """Address of the page; empty when there is none."""
+    pressed: list[str] = field(default_factory=list)
+    """Buttons of the page that were pressed and have not been obeyed yet."""
     messages: list[str] = field(default_factory=list)
     """What the processes logged, newest last."""
     events: list[KeyEvent] = field(default_factory=list)
@@ -62,6 +68,8 @@ class DemoState:
                 self._update_vehicle(event)
             elif kind == "summary":
                 self.vehicle_summary = event
+        elif source == PAGE:
+            self._update_page(kind, event)
         elif kind == "counts":
             self.forwarded = int(event["forwarded"])
 
@@ -89,6 +97,13 @@ class DemoState:
             self.first_control_s = float(event["after_s"])
         elif kind == "summary":
             self.island_summary = event
+
+    def _update_page(self, kind: object, event: Event) -> None:
+        if kind == "address":
+            self.page = str(event["address"])
+            self.messages.append(f"the page: {self.page}")
+        elif kind == "press":
+            self.pressed.append(str(event["key"]))
 
     @property
     def is_driving(self) -> bool:

@@ -9,8 +9,17 @@ import selectors
 import time
 from collections.abc import Callable, Sequence
 
+from safety_island.cli.browser import open_page
 from safety_island.cli.demo.child import Child, how_it_ended
-from safety_island.cli.demo.events import ARM, BRIDGE, ISLAND, SECOND_ISLAND, VEHICLE, DemoState
+from safety_island.cli.demo.events import (
+    ARM,
+    BRIDGE,
+    ISLAND,
+    PAGE,
+    SECOND_ISLAND,
+    VEHICLE,
+    DemoState,
+)
 from safety_island.cli.demo.keyboard import Keyboard
 from safety_island.cli.demo.text import waiting_for
 from safety_island.cli.stopping import StopFlag
@@ -27,7 +36,7 @@ SUMMARY_LIMIT_S = 2.0
 LEAVE_LIMIT_S = 1.0
 """Time [s] in which the island learns that autonomous mode was left, before it is ended."""
 
-_ORDER = (ARM, SECOND_ISLAND, ISLAND, BRIDGE, VEHICLE)
+_ORDER = (ARM, SECOND_ISLAND, ISLAND, BRIDGE, VEHICLE, PAGE)
 """Who leaves first at the end: a process that is still there misses no input."""
 
 
@@ -40,7 +49,8 @@ class Session:
 
     The demo ends in order when the main compute reports its summary, or when ``stop`` is set.
     After ``limit_s`` [s] of driving the main compute is asked to end. ``on_keys`` is told what
-    comes from the ``keyboard``; ``look`` is called with the time [s] after whatever came.
+    comes from the ``keyboard``, ``on_button`` of each button of the page; ``look`` is called with
+    the time [s] after whatever came.
     """
 
     def __init__(
@@ -53,6 +63,9 @@ class Session:
         self.state = DemoState()
         self.keyboard: Keyboard | None = None
         self.on_keys: Callable[[str], None] = lambda keys: None
+        self.opens_page = False
+        """Whether the page is opened in the browser of the desktop, once it is served."""
+        self.on_button: Callable[[str], None] = lambda key: None
         self.look: Callable[[float], None] = lambda now: None
         self._children, self._running = list(children), list[Child]()
         self._show = show
@@ -112,6 +125,11 @@ class Session:
         while not is_over():
             ready = self._selector.select(REFRESH_S)
             self._read(self._running)
+            if self.opens_page and self.state.page:
+                self.opens_page = False
+                open_page(self.state.page)
+            while self.state.pressed:
+                self.on_button(self.state.pressed.pop(0))
             self.look(time.monotonic())
             keyboard = self.keyboard
             if keyboard is not None and any(key.fd == keyboard.descriptor for key, _ in ready):
@@ -141,6 +159,8 @@ class Session:
                 continue
             if child.name == ARM:  # it answers and ends, whatever the answer
                 self.drop(child)
+            elif child.name == PAGE:
+                self._lose_page(child, code)
             elif child.name != VEHICLE or code != 0:
                 self._read(self._running)
                 words = next((line for line in reversed(child.said) if line.strip()), "")
@@ -149,6 +169,15 @@ class Session:
             else:
                 return True
         return self._stop.is_set() or bool(self.state.vehicle_summary)
+
+    def _lose_page(self, child: Child, code: int) -> None:
+        """The drive goes on without the page."""
+        self.drop(child)
+        words = f": {child.said[-1]}" if child.said else ""
+        self.state.page = ""
+        self.state.messages.append(
+            f"the page has ended ({how_it_ended(code)}{words}); the drive goes on without it"
+        )
 
     def _tell(self) -> None:
         now = time.monotonic()

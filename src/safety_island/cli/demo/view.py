@@ -115,6 +115,8 @@ class View:
             parts += [Text(text, style, no_wrap=True, overflow="ellipsis") for text in texts]
         if self._has_keys:
             parts += [Text(), Text(self._help, style="italic")]
+        if state.page:
+            parts.append(Text(f"page: {state.page}", style="bold", no_wrap=True))
         return parts
 
 

@@ -69,7 +69,7 @@ def execute(arguments: argparse.Namespace) -> int:
 
 
 def _tell_why(arguments: argparse.Namespace, reader: StatusReader) -> int:
-    from safety_island.cli.status.why import why_values
+    from safety_island.status.why import why_values
 
     *before, status = reader.recent(arguments.timeout)
     values = why_values(status, before, reader.publishers())

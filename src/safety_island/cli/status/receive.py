@@ -7,7 +7,6 @@ import argparse
 from collections.abc import Callable
 
 from safety_island.cli import options
-from safety_island.cli.status.domain import Domain
 from safety_island.dds.participant import Participant
 from safety_island.dds.topics import STATUS
 from safety_island.errors import IslandError
@@ -15,6 +14,7 @@ from safety_island.messages.errors import DecodeError
 from safety_island.messages.status import decode_status
 from safety_island.messages.status_fields import Status
 from safety_island.platform.posix.clock import PosixClock
+from safety_island.status.domain import Domain
 
 SLICE_S = 0.1
 """Longest wait at a time, so that a signal is heard."""

@@ -12,10 +12,10 @@ from rich.live import Live
 
 from safety_island.cli.jsonlines import HEAD
 from safety_island.cli.status.text import plain_line
-from safety_island.cli.status.values import status_values
 from safety_island.cli.status.view import draw
-from safety_island.cli.status.why import held_by
 from safety_island.messages.status_fields import Status
+from safety_island.status.values import status_values
+from safety_island.status.why import held_by
 
 DRAW_EVERY_S = 0.1
 PLAIN_EVERY_S = 1.0

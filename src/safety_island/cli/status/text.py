@@ -6,18 +6,18 @@ from __future__ import annotations
 import math
 
 from safety_island.can.mode import OutputMode
-from safety_island.cli.status.names import (
+from safety_island.control.status import ControllerLimit, LongitudinalState, Mode, MpcStatus
+from safety_island.life_cycle.state import State
+from safety_island.messages.arm import ArmResult
+from safety_island.messages.status_fields import Status
+from safety_island.status.names import (
     flags_of,
     guard_limits_of,
     name_of,
     optional_name,
     verdict_of,
 )
-from safety_island.cli.status.why import flows, held_by, others, why
-from safety_island.control.status import ControllerLimit, LongitudinalState, Mode, MpcStatus
-from safety_island.life_cycle.state import State
-from safety_island.messages.arm import ArmResult
-from safety_island.messages.status_fields import Status
+from safety_island.status.why import flows, held_by, others, why
 from safety_island.words import in_words
 
 

@@ -3,11 +3,11 @@
 
 from __future__ import annotations
 
-from safety_island.cli.status.names import input_name
 from safety_island.gate.reason import EXPLANATIONS as SAMPLE_REASONS
 from safety_island.gate.reason import SampleReason
 from safety_island.life_cycle.reason import EXPLANATIONS, Explanation, Reason
 from safety_island.messages.status_fields import Status
+from safety_island.status.names import input_name
 
 _NEWER = "use the version of the island"
 

@@ -8,14 +8,6 @@ from enum import IntEnum
 from typing import Any
 
 from safety_island.can.mode import OutputMode
-from safety_island.cli.status.names import (
-    flags_of,
-    guard_limits_of,
-    input_name,
-    name_of,
-    optional_name,
-    verdict_of,
-)
 from safety_island.control.status import ControllerLimit, LongitudinalState, Mode, MpcStatus
 from safety_island.gate.reason import SampleReason
 from safety_island.gate.warning import InputWarning
@@ -23,6 +15,14 @@ from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State
 from safety_island.messages.arm import ArmResult
 from safety_island.messages.status_fields import InputStatus, Status
+from safety_island.status.names import (
+    flags_of,
+    guard_limits_of,
+    input_name,
+    name_of,
+    optional_name,
+    verdict_of,
+)
 
 _ENUMS: dict[str, type[IntEnum]] = {
     "state": State,

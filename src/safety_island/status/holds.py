@@ -10,13 +10,13 @@ from collections.abc import Iterator, Sequence
 from enum import StrEnum
 from typing import NamedTuple
 
-from safety_island.cli.status.names import GUARD_LIMITS, guard_limits_of, name_of
-from safety_island.cli.status.reasons import plain
 from safety_island.control.status import ControllerLimit, LongitudinalState, MpcStatus
 from safety_island.life_cycle.reason import Explanation
 from safety_island.life_cycle.state import State
 from safety_island.messages.status import NO_VALUE
 from safety_island.messages.status_fields import Status
+from safety_island.status.names import GUARD_LIMITS, guard_limits_of, name_of
+from safety_island.status.reasons import plain
 
 STANDSTILL = 0.01
 """Target speed [m/s] below which a trajectory asks to stand."""

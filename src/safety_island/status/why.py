@@ -6,18 +6,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from safety_island.cli.status.domain import Domain
-from safety_island.cli.status.facts import facts
-from safety_island.cli.status.holds import holds, mpc_action
-from safety_island.cli.status.names import name_of
-from safety_island.cli.status.reasons import explained
-from safety_island.cli.status.samples import oldest_input, refusal_action, warned
 from safety_island.control.status import MpcStatus
 from safety_island.dds.topics import CONTROL
 from safety_island.life_cycle.reason import EXPLANATIONS, Explanation, Reason
 from safety_island.life_cycle.state import State
 from safety_island.messages.status import NO_VALUE
 from safety_island.messages.status_fields import Status
+from safety_island.status.domain import Domain
+from safety_island.status.facts import facts
+from safety_island.status.holds import holds, mpc_action
+from safety_island.status.names import name_of
+from safety_island.status.reasons import explained
+from safety_island.status.samples import oldest_input, refusal_action, warned
 
 _SENDING = (State.READY, State.ACTIVE)
 _LEADS: dict[int, str] = {

@@ -10,8 +10,6 @@ from typing import Any
 import pytest
 
 from safety_island.cli.main import main
-from safety_island.cli.status.domain import Domain
-from safety_island.cli.status.why import why
 from safety_island.dds.config import URI, DdsConfig
 from safety_island.dds.discovery import RemoteEndpoint
 from safety_island.dds.participant import Participant
@@ -21,7 +19,9 @@ from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State
 from safety_island.messages.status_fields import Status
 from safety_island.node.inputs import INPUTS
-from tests.cli.status.samples import (
+from safety_island.status.domain import Domain
+from safety_island.status.why import why
+from tests.status.samples import (
     NOT_FINITE,
     ODOMETRY,
     OPERATION_MODE,

@@ -9,8 +9,6 @@ from typing import Any
 
 import pytest
 
-from safety_island.cli.status.holds import EXPLANATIONS, MPC_EXPLANATIONS, HoldReason, holds
-from safety_island.cli.status.why import flows, held_by, is_free, why, why_values
 from safety_island.control.status import ControllerLimit, LongitudinalState, MpcStatus
 from safety_island.dds.topics import STATUS
 from safety_island.guard import Limit
@@ -21,8 +19,10 @@ from safety_island.messages.status_fields import Status
 from safety_island.params import load_set
 from safety_island.sim.closed_loop import ClosedLoop
 from safety_island.sim.courses import load_course
-from tests.cli.status.samples import ODOMETRY, sample
+from safety_island.status.holds import EXPLANATIONS, MPC_EXPLANATIONS, HoldReason, holds
+from safety_island.status.why import flows, held_by, is_free, why, why_values
 from tests.sim.random_drives import NodeFollower
+from tests.status.samples import ODOMETRY, sample
 
 STOPPED: dict[str, Any] = {
     "longitudinal_state": LongitudinalState.STOPPED,

@@ -8,14 +8,14 @@ from typing import Any
 
 from hypothesis import given, settings
 
-from safety_island.cli.status.names import guard_limits_of
-from safety_island.cli.status.values import status_values
 from safety_island.gate.reason import SampleReason
 from safety_island.messages import codec
 from safety_island.messages.status import STATUS, decode_status
-from tests.cli.status.samples import NOT_FINITE, ODOMETRY, STALE, sample
+from safety_island.status.names import guard_limits_of
+from safety_island.status.values import status_values
 from tests.messages.samples import status_of_nothing
 from tests.messages.strategies import messages
+from tests.status.samples import NOT_FINITE, ODOMETRY, STALE, sample
 
 
 def test_numbers_of_enumerations_have_their_names() -> None:

@@ -9,14 +9,14 @@ from typing import Any
 import pytest
 from hypothesis import given, settings
 
-from safety_island.cli.status.why import flows, why
 from safety_island.control.status import Mode, MpcStatus
 from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State
 from safety_island.messages import codec
 from safety_island.messages.status import STATUS, decode_status
-from tests.cli.status.samples import NOT_FINITE, ODOMETRY, STALE, TRAJECTORY, sample
+from safety_island.status.why import flows, why
 from tests.messages.strategies import messages
+from tests.status.samples import NOT_FINITE, ODOMETRY, STALE, TRAJECTORY, sample
 
 SILENT: dict[str, Any] = {"state": State.SILENT, "published": False, "armed": False}
 MANUAL: dict[str, Any] = {

@@ -5,11 +5,11 @@ from __future__ import annotations
 
 import math
 
-from safety_island.cli.status.names import flags_of, input_name
-from safety_island.cli.status.reasons import explained_refusal
 from safety_island.gate.warning import InputWarning
 from safety_island.life_cycle.reason import Reason
 from safety_island.messages.status_fields import InputStatus, Status
+from safety_island.status.names import flags_of, input_name
+from safety_island.status.reasons import explained_refusal
 
 _BY_SAMPLES = (Reason.WAITING_FOR_INPUT, Reason.INPUT_STALE)
 

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The live page: what the island does, seen in a browser."""
