@@ -6,12 +6,14 @@ import math
 import numpy as np
 
 from safety_island.kernel.kernel import kernel
+from safety_island.kernel.math.inverse import atan2
+from safety_island.kernel.math.remainder import fmod
 
 
 @kernel
 def normalize_angle(angle):
     """Wrap an angle [rad] to [-pi, pi)."""
-    wrapped = np.fmod(angle, 2.0 * math.pi)
+    wrapped = fmod(angle, 2.0 * math.pi)
     if wrapped >= math.pi or wrapped < -math.pi:
         wrapped -= math.copysign(2.0 * math.pi, wrapped)
     return wrapped
@@ -30,7 +32,7 @@ def clip(value, low, high):
 @kernel
 def yaw_of(qx, qy, qz, qw):
     """Yaw [rad] of a quaternion, without normalising it (as the firmware does)."""
-    return math.atan2(2.0 * (qw * qz + qx * qy), 1.0 - 2.0 * (qy * qy + qz * qz))
+    return atan2(2.0 * (qw * qz + qx * qy), 1.0 - 2.0 * (qy * qy + qz * qz))
 
 
 @kernel

@@ -9,6 +9,7 @@ import math
 from safety_island.control.geometry import normalize_angle
 from safety_island.control.reference_positions import ensure
 from safety_island.kernel.kernel import kernel
+from safety_island.kernel.math.inverse import atan2
 
 TOO_CLOSE = 1e-3
 """Points of the reference nearer than this [m] give no direction and no curvature."""
@@ -31,7 +32,7 @@ def starts_close(lat):
 @kernel
 def _direction(lat, i, j):
     """Yaw [rad] of the vehicle on the line from point ``i`` to point ``j``."""
-    yaw = math.atan2(lat.ry[j] - lat.ry[i], lat.rx[j] - lat.rx[i])
+    yaw = atan2(lat.ry[j] - lat.ry[i], lat.rx[j] - lat.rx[i])
     return yaw if lat.is_forward else yaw + math.pi
 
 
@@ -66,7 +67,7 @@ def yaw_at(lat, i):
     if lat.one_sided_ends:
         return _yaw_one_sided(lat, min(i, n - 1))
     i = min(max(i, 1), n - 2)
-    yaw = math.atan2(lat.ry[i + 1] - lat.ry[i - 1], lat.rx[i + 1] - lat.rx[i - 1])
+    yaw = atan2(lat.ry[i + 1] - lat.ry[i - 1], lat.rx[i + 1] - lat.rx[i - 1])
     return yaw if lat.is_forward else yaw + math.pi
 
 
