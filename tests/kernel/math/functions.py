@@ -82,27 +82,24 @@ def any_double(rng: random.Random) -> float:
 
 def angle(rng: random.Random) -> float:
     """An angle [rad]: usual, huge, or next to a multiple of pi / 2."""
-    return rng.choice(
-        [
-            lambda: rng.uniform(-math.pi, math.pi),
-            lambda: rng.uniform(-1e4, 1e4),
-            lambda: rng.randrange(1, 2 ** rng.randrange(2, 52)) * (math.pi / 2),
-            lambda: math.ldexp(rng.uniform(1.0, 2.0), rng.randrange(-40, 1024)),
-        ]
-    )()
+    kinds = (
+        rng.uniform(-math.pi, math.pi),
+        rng.uniform(-1e4, 1e4),
+        rng.randrange(1, 2 ** rng.randrange(2, 52)) * (math.pi / 2),
+        math.ldexp(rng.uniform(1.0, 2.0), rng.randrange(-40, 1024)),
+    )
+    return rng.choice(kinds)
 
 
 def share(rng: random.Random) -> float:
     """A number in [-1, 1]; many are near a bound or 0."""
-    size = rng.choice(
-        [
-            lambda: rng.uniform(0.0, 1.0),
-            lambda: 1.0 - 2.0 ** rng.uniform(-53.0, -1.0),
-            lambda: 2.0 ** rng.uniform(-60.0, 0.0),
-            lambda: rng.randrange(2**12) / 2**12,
-        ]
-    )()
-    return math.copysign(size, rng.uniform(-1.0, 1.0))
+    sizes = (
+        rng.uniform(0.0, 1.0),
+        1.0 - 2.0 ** rng.uniform(-53.0, -1.0),
+        2.0 ** rng.uniform(-60.0, 0.0),
+        rng.randrange(2**12) / 2**12,
+    )
+    return math.copysign(rng.choice(sizes), rng.uniform(-1.0, 1.0))
 
 
 def exponent(rng: random.Random) -> float:

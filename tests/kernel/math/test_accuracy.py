@@ -13,14 +13,14 @@ import pytest
 from mpmath import mp, mpf
 
 from safety_island.kernel.kernel import JIT
+from safety_island.kernel.math.inverse import atan2
+from safety_island.kernel.math.remainder import fmod
 from tests.kernel.math.functions import (
     OF_ONE,
     SPECIAL,
     angle,
     any_double,
-    atan2,
     exponent,
-    fmod,
     positive,
     share,
     side,

@@ -9,23 +9,11 @@ from collections.abc import Callable
 
 import pytest
 
-from tests.kernel.math.functions import (
-    OF_ONE,
-    acos,
-    any_double,
-    asin,
-    atan,
-    atan2,
-    cos,
-    exp,
-    fmod,
-    log,
-    positive,
-    share,
-    side,
-    sin,
-    tan,
-)
+from safety_island.kernel.math.exponential import exp, log
+from safety_island.kernel.math.inverse import acos, asin, atan, atan2
+from safety_island.kernel.math.remainder import fmod
+from safety_island.kernel.math.trigonometric import cos, sin, tan
+from tests.kernel.math.functions import OF_ONE, any_double, positive, share, side
 
 INF, NAN, PI = math.inf, math.nan, math.pi
 

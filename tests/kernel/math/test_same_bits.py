@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The maths functions give the same bits as plain Python, compiled, and on other processors."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from safety_island.build.codegen import compile_object
+from safety_island.build.elf import read_elf
+from safety_island.build.kernel_compile import ENVIRONMENT
+from safety_island.build.linker import find_compiler
+from safety_island.build.machines import AARCH64, CORTEX_R52, Machine, host
+from safety_island.kernel.kernel import JIT
+from tests.kernel.math.functions import CALL, CALL_ALL, ENTRY, arguments, digest
+
+ROOT = Path(__file__).parents[3]
+MODULE = "tests.kernel.math.functions"
+pytestmark = pytest.mark.timeout(600)
+
+MAIN = """
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+int32_t safety_island_call_all(void *calls, int64_t n);
+int main(int argc, char **argv) {
+  long n = atol(argv[1]), size = atol(argv[2]);
+  char *calls = malloc(n * size);
+  if (fread(calls, size, n, stdin) != n) return 1;
+  if (safety_island_call_all(calls, n)) return 2;
+  return fwrite(calls, size, n, stdout) == n ? 0 : 3;
+}
+"""
+
+
+def in_a_process(*words: str, **environment: str) -> str:
+    """Run the module of the functions; return what it prints."""
+    path = {"PYTHONPATH": os.pathsep.join([str(ROOT / "src"), *map(str, sys.path)])}
+    return subprocess.check_output(
+        [sys.executable, "-m", MODULE, *words],
+        cwd=ROOT,
+        env=os.environ | path | environment,
+        text=True,
+    )
+
+
+@pytest.fixture(scope="module")
+def expected() -> str:
+    """The hash of every bit, as this process runs kernels."""
+    calls = arguments()
+    assert CALL_ALL(calls, len(calls)) == 0
+    return digest(calls)
+
+
+@pytest.mark.skipif(not JIT, reason="this process runs plain Python already")
+def test_plain_python_gives_the_bits_of_compiled_code(expected: str) -> None:
+    assert in_a_process(SAFETY_ISLAND_JIT="0").split() == [expected]
+
+
+@pytest.fixture(scope="module")
+def ir() -> str:
+    """LLVM IR of all functions, for no particular machine."""
+    return in_a_process("ir", **ENVIRONMENT)
+
+
+def test_no_function_needs_a_maths_library(ir: str) -> None:
+    for machine in (host(), AARCH64, CORTEX_R52):
+        undefined = read_elf(compile_object(ENTRY.name, ir, ENTRY.arguments, machine)).undefined
+        assert set(undefined) <= {"memcpy", "memset"}, machine.name
+
+
+def values_of(folder: Path, ir: str, machine: Machine, link: list[str], run: list[str]) -> str:
+    """Link a program around the functions, run it, and return the hash of its values."""
+    (folder / "main.c").write_text(MAIN)
+    code = compile_object(ENTRY.name, ir, ENTRY.arguments, machine)
+    (folder / "functions.o").write_bytes(code)
+    command = [*link, "-static", "-o", "program", "main.c", "functions.o"]
+    subprocess.run(command, cwd=folder, check=True)
+    calls = arguments()
+    size = [str(len(calls)), str(calls.itemsize)]
+    program = [*run, str(folder / "program"), *size]
+    said = subprocess.check_output(program, input=calls.tobytes())
+    return digest(np.frombuffer(said, CALL))
+
+
+def test_a_library_for_this_machine_gives_the_same_bits(
+    tmp_path: Path, ir: str, expected: str
+) -> None:
+    compiler = find_compiler()
+    assert compiler is not None
+    assert values_of(tmp_path, ir, host(), list(compiler.command), []) == expected
+
+
+@pytest.mark.skipif(
+    not shutil.which("qemu-aarch64") or not shutil.which("aarch64-linux-gnu-gcc"),
+    reason="no emulator of aarch64 (qemu-user), or no compiler for it (gcc-aarch64-linux-gnu)",
+)
+def test_aarch64_gives_the_same_bits(tmp_path: Path, ir: str, expected: str) -> None:
+    link = ["aarch64-linux-gnu-gcc"]
+    assert values_of(tmp_path, ir, AARCH64, link, ["qemu-aarch64"]) == expected
+
+
+@pytest.mark.skipif(
+    not shutil.which("qemu-arm") or find_spec("ziglang") is None,
+    reason="no emulator of Arm (qemu-user), or no compiler for it (the package ziglang)",
+)
+def test_the_cortex_r52_gives_the_same_bits(tmp_path: Path, ir: str, expected: str) -> None:
+    link = [sys.executable, "-m", "ziglang", "cc", "-target", "arm-linux-musleabihf"]
+    assert values_of(tmp_path, ir, CORTEX_R52, link, ["qemu-arm", "-cpu", "max"]) == expected
