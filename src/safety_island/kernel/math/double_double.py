@@ -42,6 +42,15 @@ def two_product(a, b):
 
 
 @kernel
+def short_product(a, b):
+    """a * b, and the error of that product, for an ``a`` of at most 26 bits."""
+    product = a * b
+    wide = SPLITTER * b
+    b_high = wide - (wide - b)
+    return product, (a * b_high - product) + a * (b - b_high)
+
+
+@kernel
 def multiply(a, a_low, b, b_low):
     """Product of two such numbers."""
     product, rest = two_product(a, b)
@@ -50,8 +59,12 @@ def multiply(a, a_low, b, b_low):
 
 @kernel
 def divide(a, a_low, b, b_low):
-    """Quotient of two such numbers: that of the doubles, and what it leaves over."""
+    """Quotient of two such numbers: that of the doubles, and what it leaves over.
+
+    A processor divides twice at once when neither division waits for the other one.
+    """
     quotient = a / b
+    inverse = 1.0 / b
     product, rest = two_product(quotient, b)
     left = ((a - product) - rest) + (a_low - quotient * b_low)
-    return quotient, left / b
+    return quotient, left * inverse

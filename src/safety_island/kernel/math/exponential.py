@@ -6,7 +6,7 @@ import math
 import numpy as np
 
 from safety_island.kernel.kernel import kernel
-from safety_island.kernel.math.double_double import divide, fast_two_sum, two_sum
+from safety_island.kernel.math.double_double import SPLITTER, fast_two_sum, two_sum
 from safety_island.kernel.math.reduction import TO_WHOLE
 from safety_island.kernel.math.trigonometric import NAN
 
@@ -41,6 +41,7 @@ LOGARITHM = (
 """(atanh(s) / s - 1) / s**2 as a polynomial of s**2."""
 
 INVERSE_LN2 = 1.4426950408889634
+FAR = 2.0**64
 ROOT_2 = 1.4142135623730951
 FINE_POWERS = np.array([2.0**i for i in range(32)])
 COARSE_POWERS = np.array([2.0 ** (32 * i - 1024) for i in range(64)])
@@ -83,27 +84,47 @@ def log(x):
     if not 0.0 < x < math.inf:
         return -math.inf if x == 0.0 else (x if x == math.inf else NAN)
     mantissa, n = _split(x)
-    # log(m) = 2 atanh(s), s = (m - 1) / (m + 1)
-    above, below = fast_two_sum(2.0, mantissa - 1.0)
-    s, s_low = divide(mantissa - 1.0, 0.0, above, below)
+    above = mantissa - 1.0  # exact
+    half, half_low = _half_square(above)
+    high, error = two_sum(n * LN2[0], above)
+    high, more = fast_two_sum(high, -half)
+    low = n * LN2[1] - half_low + _curve_of_logarithm(above, half + half_low)
+    return high + (more + (error + low))
+
+
+@kernel
+def _half_square(x):
+    """x**2 / 2: that of its upper 26 bits, which is exact, and the rest."""
+    wide = SPLITTER * x
+    top = wide - (wide - x)
+    return 0.5 * top * top, 0.5 * (x - top) * (x + top)
+
+
+@kernel
+def _curve_of_logarithm(x, half_square):
+    """log(1 + x) - x + x**2 / 2.
+
+    log(1 + x) = 2 atanh(s) = 2 s + s R(s**2) with s = x / (2 + x). As 2 s = x - s x and
+    s x = (1 - s) x**2 / 2, only this small part depends on the rounding of s.
+    """
+    s = x / (2.0 + x)
     a, b, c, d, e, f, g = LOGARITHM
     z = s * s
-    bend = s * z * (a + z * (b + z * (c + z * (d + z * (e + z * (f + z * g))))))
-    high, error = two_sum(n * LN2[0], 2.0 * s)
-    return high + (error + (n * LN2[1] + 2.0 * (s_low + bend)))
+    rest = 2.0 * z * (a + z * (b + z * (c + z * (d + z * (e + z * (f + z * g))))))
+    return s * (half_square + rest)
 
 
 @kernel
 def _split(x):
     """Number in [1 / root 2, root 2], and power of two, whose product is a positive number."""
     n = 0
-    if x < 2.0**-500:  # such as a subnormal number
-        x *= 2.0**600
-        n -= 600
-    if x < 1.0:
-        x *= 2.0**500
-        n -= 500
-    step = 512
+    while x >= FAR:
+        x *= 1.0 / FAR
+        n += 64
+    while x < 1.0:
+        x *= FAR
+        n -= 64
+    step = 32
     while step > 0:
         if x >= power_of_two(step):
             x *= power_of_two(-step)

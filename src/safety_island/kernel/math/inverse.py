@@ -10,7 +10,13 @@ import math
 import numpy as np
 
 from safety_island.kernel.kernel import kernel
-from safety_island.kernel.math.double_double import divide, fast_two_sum, two_product, two_sum
+from safety_island.kernel.math.double_double import (
+    divide,
+    fast_two_sum,
+    short_product,
+    two_product,
+    two_sum,
+)
 from safety_island.kernel.math.reduction import HALF_PI
 from safety_island.kernel.math.trigonometric import NAN, TINY
 
@@ -21,6 +27,8 @@ THREE_QUARTERS_PI = 2.356194490192345
 ARC_TANGENT = (-0.3333333333333326, 0.19999999997592258, -0.14285702481332843, 0.11092587642056967)
 """(atan(u) / u - 1) / u**2 as a polynomial of u**2."""
 STEPS = 16
+FIRST_STEP = 1.0 / 32.0
+"""Below, a tangent is nearest to the step 0."""
 ARC_TANGENTS_HIGH = np.array(
     [
         0.0,
@@ -78,6 +86,8 @@ def atan(x):
     size = math.fabs(x)
     if size < TINY:
         return x
+    if size < FIRST_STEP:
+        return x + _bend(x)
     if size <= 1.0:
         high, low = _octant(size, 0.0, 1.0, 0.0)
     elif size <= 1.0 / NEGLIGIBLE:
@@ -175,18 +185,23 @@ def _octant(y, y_low, x, x_low):
     """Angle of a point with 0 <= y <= x in two doubles; each coordinate is two doubles."""
     step = int(STEPS * y / x + 0.5)
     c = step / STEPS
-    product, rest = two_product(c, x)
+    product, rest = short_product(c, x)
     up, up_low = two_sum(y, -product)
     up_low += y_low - (rest + c * x_low)
-    product, rest = two_product(c, y)
+    product, rest = short_product(c, y)
     along, along_low = fast_two_sum(x, product)
     along_low += x_low + (rest + c * y_low)
     u, u_low = divide(up, up_low, along, along_low)
+    high, error = fast_two_sum(float(ARC_TANGENTS_HIGH[step]), u)
+    return high, error + (float(ARC_TANGENTS_LOW[step]) + (u_low + _bend(u)))
+
+
+@kernel
+def _bend(u):
+    """atan(u) - u for |u| <= 1/32."""
     first, second, third, fourth = ARC_TANGENT
     z = u * u
-    bend = u * z * (first + z * (second + z * (third + z * fourth)))
-    high, error = fast_two_sum(float(ARC_TANGENTS_HIGH[step]), u)
-    return high, error + (float(ARC_TANGENTS_LOW[step]) + (u_low + bend))
+    return u * z * (first + z * (second + z * (third + z * fourth)))
 
 
 @kernel
