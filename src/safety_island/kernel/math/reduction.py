@@ -24,6 +24,8 @@ TO_WHOLE = 1.5 * 2.0**52
 LIMB_BITS = 26
 LIMB = 2.0**LIMB_BITS
 LIMB_MASK = 2**LIMB_BITS - 1
+TWO_LIMBS = 2 ** (2 * LIMB_BITS)
+HALF_OF_TWO_LIMBS = TWO_LIMBS // 2
 _TWO_OVER_PI_DIGITS = int(
     "a2f9836e4e441529fc2757d1f534ddc0db6295993c439041fe5163abdebbc561b7246e3a424dd2e006492eea09d192"
     "1cfe1deb1cb129a73ee88235f52ebb4484e99c7026b45f7e413991d639835339f49c845f8bbdf9283b1ff897ffde05"
@@ -71,8 +73,8 @@ def _reduce_with_many_bits(x):
     second_part, carry = _two_limbs(shift + 3, first, second, third, carry)
     first_part, carry = _two_limbs(shift + 1, first, second, third, carry)
     quadrant = _limb(shift, first, second, third) + carry
-    if first_part >= 2 ** (2 * LIMB_BITS - 1):  # a half and more: the next quadrant is nearer
-        first_part -= 2 ** (2 * LIMB_BITS)
+    if first_part >= HALF_OF_TWO_LIMBS:  # a half and more: the next quadrant is nearer
+        first_part -= TWO_LIMBS
         quadrant += 1
 
     high, error = two_sum(first_part * 2.0**-52, second_part * 2.0**-104)
