@@ -11,11 +11,12 @@ import math
 
 from safety_island.control.status import MpcStatus
 from safety_island.kernel.kernel import kernel
+from safety_island.kernel.math.exponential import log
 
 NOT_POSITIVE_DEFINITE = int(MpcStatus.NOT_POSITIVE_DEFINITE)
 SOLVED = int(MpcStatus.SOLVED)
 
-LOG_MIN_DETERMINANT = math.log(1e-9)
+LOG_MIN_DETERMINANT = -20.72326583694641  # ln(1e-9)
 """The firmware's limit on det H, below which it gives no solution."""
 
 
@@ -35,7 +36,7 @@ def factorize(q, n):
         pivots = _scale_pair(q, 2 * half, m)
         if not pivots > 0.0:
             return NOT_POSITIVE_DEFINITE
-        log_determinant += math.log(pivots)
+        log_determinant += log(pivots)
     return SOLVED if log_determinant >= LOG_MIN_DETERMINANT else NOT_POSITIVE_DEFINITE
 
 

@@ -4,6 +4,7 @@
 import math
 
 from safety_island.kernel.kernel import kernel
+from safety_island.kernel.math.trigonometric import tan
 
 
 @kernel
@@ -15,7 +16,7 @@ def butterworth(memory, u, cutoff_hz, period):
     """
     if cutoff_hz * 2.0 * period >= 1.0:
         return u
-    xi = 1.0 / math.tan(math.pi * cutoff_hz * period)
+    xi = 1.0 / tan(math.pi * cutoff_hz * period)
     b0 = 1.0 / (1.0 + math.sqrt(2.0) * xi + xi * xi)
     a1 = 2.0 * (xi * xi - 1.0) * b0
     a2 = -(1.0 - math.sqrt(2.0) * xi + xi * xi) * b0

@@ -6,6 +6,9 @@ import math
 import numpy as np
 
 from safety_island.kernel.kernel import kernel
+from safety_island.kernel.math.inverse import atan2
+from safety_island.kernel.math.remainder import fmod
+from safety_island.kernel.math.trigonometric import cos
 
 _CLEAR = 1e-9
 """Two cosines further apart than this differ by more than rounding."""
@@ -14,7 +17,7 @@ _CLEAR = 1e-9
 @kernel
 def normalize_angle(angle):
     """Wrap an angle [rad] to [-pi, pi)."""
-    wrapped = np.fmod(angle, 2.0 * math.pi)
+    wrapped = fmod(angle, 2.0 * math.pi)
     if wrapped >= math.pi or wrapped < -math.pi:
         wrapped -= math.copysign(2.0 * math.pi, wrapped)
     return wrapped
@@ -23,7 +26,7 @@ def normalize_angle(angle):
 @kernel
 def cosine_of_limit(limit):
     """Cosine of a limit [rad] for ``clear_turn``; below every cosine from half a turn on."""
-    return math.cos(limit) if limit < math.pi else -2.0
+    return cos(limit) if limit < math.pi else -2.0
 
 
 @kernel
@@ -59,7 +62,7 @@ def heading_of(qx, qy, qz, qw):
 def yaw_of(qx, qy, qz, qw):
     """Yaw [rad] of a quaternion, by ``heading_of``."""
     x, y = heading_of(qx, qy, qz, qw)
-    return math.atan2(y, x)
+    return atan2(y, x)
 
 
 @kernel

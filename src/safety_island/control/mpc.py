@@ -34,6 +34,7 @@ from safety_island.control.steering_predictor import predict_steering, store_com
 from safety_island.control.steering_rate_limit import fill_bounds
 from safety_island.control.vehicle_model import advance, discretize
 from safety_island.kernel.kernel import kernel
+from safety_island.kernel.math.trigonometric import cos, sin
 
 _SOLVED = int(MpcStatus.SOLVED)
 _NO_REFERENCE = int(MpcStatus.NO_REFERENCE)
@@ -99,7 +100,7 @@ def _set_errors(params, inputs, lat, trace, x, y, yaw, path_yaw):
     ex = inputs.x - x
     ey = inputs.y - y
     trace.nearest_idx = lat.nearest
-    trace.lateral_error = -math.sin(path_yaw) * ex + math.cos(path_yaw) * ey
+    trace.lateral_error = -sin(path_yaw) * ex + cos(path_yaw) * ey
     trace.yaw_error = normalize_angle(yaw - path_yaw)
     if not params.enable_deviation_checks:
         return _SOLVED

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Lists of ``POINT`` records without overlaps: copy, interpolate, insert."""
 
-import math
-
 import numpy as np
 
 from safety_island.control.points import distance_2d, offset_along
 from safety_island.kernel.kernel import kernel
+from safety_island.kernel.math.inverse import acos
+from safety_island.kernel.math.trigonometric import sin
 
 SAME_PLACE = 1e-8
 """Two points nearer than this [m], in x and in y, are one, as in Autoware."""
@@ -77,10 +77,10 @@ def interpolate_pose(a, b, ratio, out):
     out.z = between(a.z, b.z, ratio)
     dot = a.qx * b.qx + a.qy * b.qy + a.qz * b.qz + a.qw * b.qw
     if abs(dot) < 1.0 - 2.220446049250313e-16:
-        angle = math.acos(abs(dot))
-        whole = math.sin(angle)
-        first = math.sin((1.0 - ratio) * angle) / whole
-        second = math.sin(ratio * angle) / whole
+        angle = acos(abs(dot))
+        whole = sin(angle)
+        first = sin((1.0 - ratio) * angle) / whole
+        second = sin(ratio * angle) / whole
     else:
         first = 1.0 - ratio
         second = ratio

@@ -10,6 +10,8 @@ from safety_island.control.geometry import (
     normalize_angle,
 )
 from safety_island.kernel.kernel import kernel
+from safety_island.kernel.math.inverse import atan2
+from safety_island.kernel.math.trigonometric import cos, sin
 
 
 @kernel
@@ -44,7 +46,7 @@ def _nearest_within(points, n, x, y, yaw, limit_squared, yaw_limit):
     best = -1
     best_squared = math.inf
     has_yaw_limit = yaw_limit < math.inf
-    cos_yaw, sin_yaw = math.cos(yaw), math.sin(yaw)
+    cos_yaw, sin_yaw = cos(yaw), sin(yaw)
     cos_limit = cosine_of_limit(yaw_limit) if has_yaw_limit else 0.0
     for i in range(n):
         point = points[i]
@@ -55,7 +57,7 @@ def _nearest_within(points, n, x, y, yaw, limit_squared, yaw_limit):
         if inside and has_yaw_limit:
             cos_own, sin_own = heading_of(point.qx, point.qy, point.qz, point.qw)
             clear = clear_turn(cos_own, sin_own, cos_yaw, sin_yaw, cos_limit)
-            turn = 0.0 if clear != 0 else normalize_angle(math.atan2(sin_own, cos_own) - yaw)
+            turn = 0.0 if clear != 0 else normalize_angle(atan2(sin_own, cos_own) - yaw)
             inside = clear > 0 or (clear == 0 and abs(turn) <= yaw_limit)
         if inside:
             if squared < best_squared:

@@ -28,12 +28,11 @@ determinant. (D. P. Bertsekas, "Dynamic Programming and Optimal Control", vol. I
 the last two inputs as a part of the state.)
 """
 
-import math
-
 from safety_island.control import recursion_dynamic, recursion_kinematic
 from safety_island.control.cholesky import LOG_MIN_DETERMINANT
 from safety_island.control.vehicle_model import is_kinematic
 from safety_island.kernel.kernel import kernel
+from safety_island.kernel.math.exponential import log
 
 _LARGEST = 1e150
 """The product of two pivots that are within this does not overflow."""
@@ -69,6 +68,6 @@ def _has_good_pivots(pivot, n):
             return False
         product *= pivot[j]
         if j % 2 == 1 or j == n - 1:
-            log_determinant += math.log(product)
+            log_determinant += log(product)
             product = 1.0
     return log_determinant >= LOG_MIN_DETERMINANT

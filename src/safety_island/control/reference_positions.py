@@ -18,6 +18,7 @@ import math
 from safety_island.control.limits import MAX_REFERENCE
 from safety_island.control.spline import interval_from
 from safety_island.kernel.kernel import kernel
+from safety_island.kernel.math.trigonometric import cos, sin
 
 _STRETCH = 16
 """Points that are worked out beyond the last one that was asked for."""
@@ -83,8 +84,8 @@ def extend(params, lat, count):
     step = params.traj_resample_dist
     speed = lat.rv[count - 1] if params.extends_with_end_speed else 10.0
     sign = 1.0 if lat.is_forward else -1.0
-    dx = sign * step * math.cos(lat.source_yaw_end)
-    dy = sign * step * math.sin(lat.source_yaw_end)
+    dx = sign * step * cos(lat.source_yaw_end)
+    dy = sign * step * sin(lat.source_yaw_end)
     for _ in range(int(10.0 / step)):
         if count >= MAX_REFERENCE:
             break

@@ -10,6 +10,8 @@ from safety_island.control.geometry import clear_turn, cosine_of_limit, normaliz
 from safety_island.control.reference_positions import ensure
 from safety_island.control.spline import interval_from
 from safety_island.kernel.kernel import kernel
+from safety_island.kernel.math.inverse import atan2
+from safety_island.kernel.math.trigonometric import cos, sin
 
 TOO_CLOSE = 1e-3
 """Points of the reference nearer than this [m] give no direction and no curvature."""
@@ -41,7 +43,7 @@ def starts_close(lat):
 @kernel
 def _direction(lat, i, j):
     """Yaw [rad] of the vehicle on the line from point ``i`` to point ``j``."""
-    yaw = math.atan2(lat.ry[j] - lat.ry[i], lat.rx[j] - lat.rx[i])
+    yaw = atan2(lat.ry[j] - lat.ry[i], lat.rx[j] - lat.rx[i])
     return yaw if lat.is_forward else yaw + math.pi
 
 
@@ -76,7 +78,7 @@ def yaw_at(lat, i):
     if lat.one_sided_ends:
         return _yaw_one_sided(lat, min(i, n - 1))
     i = min(max(i, 1), n - 2)
-    yaw = math.atan2(lat.ry[i + 1] - lat.ry[i - 1], lat.rx[i + 1] - lat.rx[i - 1])
+    yaw = atan2(lat.ry[i + 1] - lat.ry[i - 1], lat.rx[i + 1] - lat.rx[i - 1])
     return yaw if lat.is_forward else yaw + math.pi
 
 
@@ -217,7 +219,7 @@ def _nearest_within(lat, x, y, yaw, dist_limit, yaw_limit):
     best = -1
     best_squared = math.inf
     has_yaw_limit = yaw_limit < math.inf
-    cos_yaw, sin_yaw = math.cos(yaw), math.sin(yaw)
+    cos_yaw, sin_yaw = cos(yaw), sin(yaw)
     cos_limit = cosine_of_limit(yaw_limit) if has_yaw_limit else 0.0
     i = _next_near(lat, 0, x, y, dist_limit)
     while i <= lat.ref_n:

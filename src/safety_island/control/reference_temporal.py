@@ -21,6 +21,7 @@ from safety_island.control.spline import (
     unwrap_step,
 )
 from safety_island.kernel.kernel import kernel
+from safety_island.kernel.math.inverse import atan2
 
 _TAIL = 100.0  # seconds that each closing duplicate stands still
 _SHORTEST = 1e-4  # s, that a step takes
@@ -33,7 +34,7 @@ def accept_timed(params, points, inputs, lat):
     """Take over a received trajectory of n >= 3 points as the reference itself."""
     n = inputs.n_points
     _copy(points, n, inputs.trajectory_start, lat)
-    azimuth = math.atan2(lat.ry[1] - lat.ry[0], lat.rx[1] - lat.rx[0])
+    azimuth = atan2(lat.ry[1] - lat.ry[0], lat.rx[1] - lat.rx[0])
     lat.is_forward = abs(normalize_angle(lat.ryaw[0] - azimuth)) < math.pi / 2.0
     reach = params.path_filter_moving_ave_num
     if params.enable_path_smoothing and n > 2 * reach:
@@ -103,7 +104,7 @@ def _fill_yaw(lat, n):
         dx = lat.rx[after] - lat.rx[before]
         dy = lat.ry[after] - lat.ry[before]
         if not standing and math.sqrt(dx * dx + dy * dy) >= TOO_CLOSE:
-            lat.ryaw[i] = math.atan2(dy, dx) + turn
+            lat.ryaw[i] = atan2(dy, dx) + turn
 
 
 @kernel

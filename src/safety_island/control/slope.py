@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Slope of the road: where it is taken from, and the acceleration that compensates it."""
 
-import math
-
 from safety_island.control.geometry import clip
 from safety_island.control.pid import low_pass
 from safety_island.control.points import nearest_position, offset_along, segment_of
 from safety_island.control.status import SlopeSource
 from safety_island.control.trajectory_walk import arc_length, pitch_ahead
 from safety_island.kernel.kernel import kernel
+from safety_island.kernel.math.inverse import asin
+from safety_island.kernel.math.trigonometric import sin
 
 TRAJECTORY_PITCH = int(SlopeSource.TRAJECTORY_PITCH)
 TRAJECTORY_ADAPTIVE = int(SlopeSource.TRAJECTORY_ADAPTIVE)
@@ -23,7 +23,7 @@ RATE_GRAVITY = 9.8
 @kernel
 def body_pitch(qx, qy, qz, qw):
     """Pitch [rad] of an orientation, positive when body x points uphill."""
-    return math.asin(clip(2.0 * (qx * qz - qw * qy), -1.0, 1.0))
+    return asin(clip(2.0 * (qx * qz - qw * qy), -1.0, 1.0))
 
 
 @kernel
@@ -75,7 +75,7 @@ def update_slope(p, u, s, points):
 @kernel
 def slope_pull(p, s):
     """Acceleration [m/s^2] by which the slope pulls along body x, within the pitch limits."""
-    return GRAVITY * math.sin(clip(s.slope, p.min_pitch_rad, p.max_pitch_rad))
+    return GRAVITY * sin(clip(s.slope, p.min_pitch_rad, p.max_pitch_rad))
 
 
 @kernel

@@ -7,6 +7,7 @@ from safety_island.control.filters import butterworth
 from safety_island.control.geometry import clip
 from safety_island.control.limits import MAX_OFFSET_SAMPLES
 from safety_island.kernel.kernel import kernel
+from safety_island.kernel.math.inverse import atan2
 
 _ARRIVED = 1e-4
 """Distance [rad] from its target at which the filtered offset counts as there."""
@@ -44,7 +45,7 @@ def update_offset(params, lat, vx, wz, steer):
     if abs(steer) >= params.steering_offset_update_steer_threshold:
         return
     count = min(max(params.steering_offset_average_num, 1), MAX_OFFSET_SAMPLES)
-    sample = float(steer) - math.atan2(math.copysign(1.0, vx) * wz * params.wheel_base, abs(vx))
+    sample = float(steer) - atan2(math.copysign(1.0, vx) * wz * params.wheel_base, abs(vx))
     head = lat.offset_head % count
     lat.offset_sum += sample - lat.offset_samples[head]
     lat.offset_samples[head] = sample

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Prediction of the present tyre angle from the commands that were sent."""
 
-import math
-
 from safety_island.control.limits import MAX_HISTORY
 from safety_island.kernel.kernel import kernel
+from safety_island.kernel.math.exponential import exp
 
 _TOLERANCE = 1e-9  # seconds; a stamp carries whole nanoseconds
 
@@ -24,10 +23,10 @@ def _response_to_commands(lat, start, end, tau):
     t = start
     while i < n and end > lat.predictor_t[i] + _TOLERANCE:
         step = lat.predictor_t[i] - t
-        total += (1.0 - math.exp(-step / tau)) * float(lat.predictor_u[i - 1])
+        total += (1.0 - exp(-step / tau)) * float(lat.predictor_u[i - 1])
         t = lat.predictor_t[i]
         i += 1
-    return total + (1.0 - math.exp(-(end - t) / tau)) * float(lat.predictor_u[i - 1])
+    return total + (1.0 - exp(-(end - t) / tau)) * float(lat.predictor_u[i - 1])
 
 
 @kernel
@@ -42,7 +41,7 @@ def predict_steering(lat, now, tau):
     start = min(lat.predictor_time, now)
     lat.predictor_time = now
     response = _response_to_commands(lat, start, now, tau)
-    lat.predicted = math.exp(-(now - start) / tau) * lat.predicted + response
+    lat.predicted = exp(-(now - start) / tau) * lat.predicted + response
     return lat.predicted
 
 

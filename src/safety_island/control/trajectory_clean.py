@@ -29,6 +29,8 @@ from safety_island.control.points import advance, distance_2d
 from safety_island.control.records import CLEANED, INPUTS, PARAMS, POINT
 from safety_island.control.status import Refusal
 from safety_island.kernel.kernel import entry, kernel
+from safety_island.kernel.math.inverse import atan2
+from safety_island.kernel.math.trigonometric import cos, sin
 
 REACH = 0.1
 """Distance [m] over which the path has a direction, whatever the noise of its points."""
@@ -79,15 +81,15 @@ def _drop_coincident(points, n):
 @kernel
 def _direction(a, b):
     """Direction [rad] from one point to another."""
-    return math.atan2(b.y - a.y, b.x - a.x)
+    return atan2(b.y - a.y, b.x - a.x)
 
 
 @kernel
 def _turn_to(point, yaw):
     """Turn an orientation about the vertical to a yaw [rad]; pitch and roll stay."""
     half = 0.5 * (yaw - yaw_of(point.qx, point.qy, point.qz, point.qw))
-    c = math.cos(half)
-    s = math.sin(half)
+    c = cos(half)
+    s = sin(half)
     qx = point.qx
     qz = point.qz
     point.qx = c * qx - s * point.qy

@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Walks along a list of ``POINT`` records: a pose ahead, the stop point, the pitch."""
 
-import math
-
 import numpy as np
 
 from safety_island.control.point_list import interpolate_pose
 from safety_island.control.points import distance_2d, distance_3d
 from safety_island.kernel.kernel import kernel
+from safety_island.kernel.math.inverse import atan2
 
 STANDING = 1e-3
 """A point slower than this [m/s] is a stop point."""
@@ -53,7 +52,7 @@ def stop_distance(points, n, nearest):
 @kernel
 def elevation(a, b):
     """Pitch [rad] of the line from one point to another, positive uphill."""
-    return math.atan2(b.z - a.z, distance_2d(a, b))
+    return atan2(b.z - a.z, distance_2d(a, b))
 
 
 @kernel

@@ -10,6 +10,8 @@ import math
 
 from safety_island.control.status import VehicleModel
 from safety_island.kernel.kernel import kernel
+from safety_island.kernel.math.inverse import atan
+from safety_island.kernel.math.trigonometric import tan
 
 _KINEMATICS = int(VehicleModel.KINEMATICS)
 _NO_DELAY = int(VehicleModel.KINEMATICS_NO_DELAY)
@@ -28,11 +30,11 @@ def _steering_of(params, k):
     tangent, and the square of its secant.
     """
     tangent = params.wheel_base * k
-    angle = math.atan(tangent)
+    angle = atan(tangent)
     limit = params.max_steer_angle
     if abs(angle) > limit:
         angle = math.copysign(limit, angle)
-        tangent = math.tan(angle)
+        tangent = tan(angle)
     return angle, tangent, 1.0 + tangent * tangent
 
 
@@ -196,7 +198,7 @@ def advance_dynamic(a, b, w, u, x0, x1, x2, x3):
 def feed_forward(params, v, k):
     """Steering angle [rad] that holds the curvature k; zero below mpc_zero_ff_steer_deg."""
     if is_kinematic(params):
-        steer = math.atan(params.wheel_base * k)
+        steer = atan(params.wheel_base * k)
     else:
         mf, mr = axle_masses(params)
         mass = mf + mr

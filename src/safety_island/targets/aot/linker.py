@@ -79,14 +79,14 @@ def needed_compiler(machine: Machine | None = None) -> Compiler:
 
 
 def link_shared(objects: Sequence[Path], output: Path, machine: Machine) -> str:
-    """Link objects with the C maths library; return the name of the linker.
+    """Link objects to a shared library; return the name of the linker.
 
     Raises BuildError with the linker's own words.
     """
     compiler = needed_compiler(machine)
     files = [str(path) for path in objects]
     name = f"-Wl,-soname,{output.name}"
-    command = [*compiler.command, *_FLAGS, name, "-o", str(output), *files, "-lm"]
+    command = [*compiler.command, *_FLAGS, name, "-o", str(output), *files]
     if compiler.name.startswith("zig"):
         command += ["-target", f"{machine.triple.replace('-unknown', '')}.{GLIBC}", "-s"]
     else:

@@ -28,7 +28,7 @@ _TOP = """\
  * Control kernels of the safety island, generated from the record types of its control room.
  * One tick: safety_island_lateral_step, then safety_island_longitudinal_step. Every function
  * returns a status, keeps all its memory in the records that it is given, and calls nothing but
- * the C maths library, memset and memcpy. Units: m, s, rad and what follows from them.
+ * memset and memcpy. Units: m, s, rad and what follows from them.
  */
 #ifndef SAFETY_ISLAND_CONTROL_H
 #define SAFETY_ISLAND_CONTROL_H

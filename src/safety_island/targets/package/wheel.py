@@ -28,7 +28,7 @@ from safety_island.targets.package.revision import source_tree
 Say = Callable[[str], None]
 """Told each step, in words."""
 
-_LIBRARIES = {"libm.so.6", "libc.so.6"}
+_LIBRARIES = {"libc.so.6"}
 _VARIABLES = ("SAFETY_ISLAND_WHEEL_LIBRARY", "SAFETY_ISLAND_WHEEL_TAG")
 """How tools/hatch_hooks.py is told the library and the tag."""
 
