@@ -69,7 +69,7 @@ def record_names() -> dict[Any, str]:
     """Return every record type that a kernel takes, with its name: that of the constant."""
     found: dict[Any, str] = {}
     for entry in entries():
-        constants = sorted(entry.python.__globals__.items(), reverse=True)
+        constants = sorted(entry.records.items(), reverse=True)
         known = {value: name for name, value in constants if isinstance(value, np.dtype)}
         for dtype in entry.arguments:
             if dtype not in _SCALARS and dtype not in known:
