@@ -6,10 +6,12 @@ from __future__ import annotations
 import ast
 from pathlib import Path
 from types import FunctionType
+from typing import Any
 
-from safety_island.guard import guard as rules
+from safety_island.guard import guard
 
-TREE = ast.parse(Path(rules.__file__).read_text("utf-8"))
+rules: Any = guard  # without types
+TREE = ast.parse(Path(guard.__file__).read_text("utf-8"))
 
 
 def test_the_rules_import_mathematics_and_the_names_of_their_limits_alone() -> None:

@@ -3,16 +3,17 @@
 
 from __future__ import annotations
 
-from math import inf, nan
+from math import inf, nan, tan
 from typing import Any
 
 import pytest
 
 from safety_island.core.guard import Guard, Proposal, pack_guard
-from safety_island.guard import guard as rules
+from safety_island.guard import guard
 from safety_island.guard.records import LISTS, MAX_SPEED_POINTS
 from tests.guard.rig import TIMEOUT, WHEEL_BASE, limited
 
+rules: Any = guard  # without types
 VALUES = {name: (1.0 + i, 5.0 + 3.0 * i, 4.0 - i) for i, name in enumerate(LISTS[1:])}
 
 
@@ -97,13 +98,13 @@ def test_all_finite(place: int, value: float) -> None:
 
 
 def test_what_is_remembered_of_a_command() -> None:
-    guard = Guard(limited(), WHEEL_BASE, TIMEOUT)
-    assert guard.state.tobytes() == bytes(guard.state.nbytes)
-    guard.check(Proposal(10.0, 10.0, 7, 0.0625, 0.0, 0.0, 0.125), 1.0, 0.05)
-    memory = guard.state[0]
+    tested = Guard(limited(), WHEEL_BASE, TIMEOUT)
+    assert tested.state.tobytes() == bytes(tested.state.nbytes)
+    tested.check(Proposal(10.0, 10.0, 7, 0.0625, 0.0, 0.0, 0.125), 1.0, 0.05)
+    memory = tested.state[0]
     assert (memory.is_numbered, memory.sequence) == (True, 7)
-    assert memory.sent.tolist() == (True, 10.0, 0.0625, rules.tan(0.0625), 0.125)
+    assert memory.sent.tolist() == (True, 10.0, 0.0625, tan(0.0625), 0.125)
     assert not memory.before.exists
-    guard.check(Proposal(10.1, 10.1, 8, 0.0, 0.0, 0.0, 0.0), 1.0, 0.05)
-    assert memory.before.tolist() == (True, 10.0, 0.0625, rules.tan(0.0625), 0.125)
+    tested.check(Proposal(10.1, 10.1, 8, 0.0, 0.0, 0.0, 0.0), 1.0, 0.05)
+    assert memory.before.tolist() == (True, 10.0, 0.0625, tan(0.0625), 0.125)
     assert memory.sent.tolist() == (True, 10.1, 0.0, 0.0, 0.0)

@@ -25,10 +25,11 @@ _SCALARS: dict[Any, str] = {float: "double", int: "int64_t"}
 _TOP = """\
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Control kernels of the safety island, generated from the record types of its control room.
- * One tick: safety_island_lateral_step, then safety_island_longitudinal_step. Every function
- * returns a status, keeps all its memory in the records that it is given, and calls nothing but
- * the C maths library, memset and memcpy. Units: m, s, rad and what follows from them.
+ * Kernels of the safety island, generated from their record types.
+ * One tick: safety_island_lateral_step, safety_island_longitudinal_step, and
+ * safety_island_guard_command for what is to be sent. Every function returns a status, keeps all
+ * its memory in the records that it is given, and calls nothing but the C maths library, memset
+ * and memcpy. Units: m, s, rad and what follows from them.
  */
 #ifndef SAFETY_ISLAND_CONTROL_H
 #define SAFETY_ISLAND_CONTROL_H
