@@ -21,7 +21,6 @@ from typing import IO
 from safety_island.build import kernel_ir
 from safety_island.build.errors import BuildError
 from safety_island.kernel import kernel
-from safety_island.kernel.sources import import_entries
 
 Report = Callable[[str, int, int], None]
 """Told the name of a kernel, its index and the count, before it is compiled."""
@@ -45,7 +44,9 @@ def entries(on_demand: bool = False) -> list[kernel.Entry]:
 
     ``on_demand``: also those that only the solver OSQP needs.
     """
-    import_entries()
+    import safety_island.control.follower
+    import safety_island.control.qp_alone  # noqa: F401  (these two define every entry)
+
     return kernel.ENTRIES + (kernel.ON_DEMAND if on_demand else [])
 
 

@@ -12,7 +12,6 @@ from multiprocessing import get_context
 from time import perf_counter, sleep
 from typing import TextIO
 
-from safety_island.kernel.sources import import_entries
 from safety_island.platform.posix.process import end_with
 
 Report = Callable[[str, int, int], None]
@@ -44,9 +43,10 @@ def prepare_kernels(on_demand: bool = False) -> None:
 
 def _missing(on_demand: bool) -> list[str]:
     """Name the island's kernels of which no compiled code is on disk."""
+    import safety_island.control.follower
+    import safety_island.control.qp_alone  # noqa: F401  (these two define every entry)
     from safety_island.kernel import kernel
 
-    import_entries()
     wanted = kernel.ENTRIES + (kernel.ON_DEMAND if on_demand else [])
     return [item.name for item in wanted if kernel.JIT and not item.is_on_disk()]
 
@@ -79,9 +79,10 @@ def _compile_kept(name: str, end: float) -> str:
 
 
 def _compile_one(name: str) -> str:
+    import safety_island.control.follower
+    import safety_island.control.qp_alone  # noqa: F401
     from safety_island.kernel import kernel
 
-    import_entries()
     entries = {item.name: item for item in kernel.ENTRIES + kernel.ON_DEMAND}
     entries[name].prepare()
     return name

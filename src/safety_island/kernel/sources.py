@@ -9,26 +9,11 @@ from __future__ import annotations
 
 import hashlib
 from functools import cache
-from importlib import import_module
 from pathlib import Path
 
 PACKAGE = Path(__file__).parents[1]
 ROOMS = ("kernel", "control", "guard", "core")
 """Folders of the package that hold kernels, or what they take constants from."""
-
-
-ENTRIES = (
-    "safety_island.control.follower",
-    "safety_island.control.qp_alone",
-    "safety_island.core.guard",
-)
-"""Modules that, imported, define every entry."""
-
-
-def import_entries() -> None:
-    """Import what defines the entries, so that a list of them is whole."""
-    for name in ENTRIES:
-        import_module(name)
 
 
 @cache
