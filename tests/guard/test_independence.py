@@ -34,3 +34,10 @@ def test_what_is_compiled_from_outside_stays_plain_python() -> None:
     functions = [item for item in vars(rules).values() if isinstance(item, FunctionType)]
     assert {rules.guard_command, rules.hold} < set(functions)
     assert rules.hold(3.0, 3.0, 0, 0.0, 2.0, 1) == (2.0, 1)
+
+
+def test_the_numbers_of_verdicts_and_limits_are_plain_ones() -> None:
+    """A compiler knows no enumeration of flags."""
+    numbers = [value for value in vars(rules).values() if isinstance(value, int)]
+    assert len(numbers) >= 15
+    assert {type(value) for value in numbers} == {int}

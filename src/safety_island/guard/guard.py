@@ -6,7 +6,7 @@ an interval; ``hold`` moves a value into one after the other, the weakest first.
 come from stands beside each in ``params/sets/island/guard.param.yaml``: ISO 11270 [1] (lane
 keeping), ISO 15622 [2] (adaptive cruise control), Autoware's vehicle_cmd_gate [3].
 
-``float(...)`` where an input is read: an overflow shall be infinite, without NumPy's warning.
+An input is read as ``float(...)``: as plain Python too, an overflow is infinite without a warning.
 """
 
 import math
@@ -34,14 +34,14 @@ def guard_command(params, state, proposal, decision):
     copy(memory.sent, memory.before)
     bits = what_is_wrong(limits, memory, asked)
     if bits:
-        answer.verdict, answer.limits = _REFUSED, bits
-        answer.steering_tire_angle = answer.steering_tire_rotation_rate = math.nan
-        answer.velocity = answer.acceleration = math.nan
-        return _REFUSED
-    bits = steer(limits, memory.sent, asked, answer) | drive(limits, memory.sent, asked, answer)
-    remember(memory, asked, answer)
-    answer.verdict, answer.limits = _CLAMPED if bits else _PASSED, bits
-    return _CLAMPED if bits else _PASSED
+        refuse(answer)
+        verdict = _REFUSED
+    else:
+        bits = clamp(limits, memory.sent, asked, answer)
+        remember(memory, asked, answer)
+        verdict = _CLAMPED if bits else _PASSED
+    answer.verdict, answer.limits = verdict, bits
+    return verdict
 
 
 def what_is_wrong(limits, memory, asked):
@@ -60,18 +60,30 @@ def what_is_wrong(limits, memory, asked):
     return bits
 
 
-def steer(limits, sent, asked, answer):
-    """Hold the steering angle and its rate; return the bits of the limits that acted.
+def clamp(limits, sent, asked, answer):
+    """Answer with the nearest values that keep the limits; return the bits of those that acted."""
+    angle, steered = hold_angle(limits, sent, asked)
+    rate, turned = hold_rate(limits, asked, angle, steered)
+    velocity, driven = hold_velocity(limits, asked)
+    acceleration, pushed = hold_acceleration(limits, sent, asked)
+    answer.steering_tire_angle, answer.steering_tire_rotation_rate = angle, rate
+    answer.velocity, answer.acceleration = velocity, acceleration
+    return steered | turned | driven | pushed
+
+
+def hold_angle(limits, sent, asked):
+    """Hold the steering angle [rad]; return it and the bits of the limits that acted.
 
     One wrong measurement must not make the wheel jump, so what depends on measurements gives way to
     the limits of change; nothing leads beyond the largest angle. Lateral acceleration by the
     bicycle model, without slip: speed^2 x tan(angle) / wheelbase.
     """
     speed, steering = abs(float(asked.speed)), float(asked.steering)
-    wanted, bits = float(asked.steering_tire_angle), 0
+    wanted = float(asked.steering_tire_angle)
+    angle, bits = wanted, 0
     per_lateral = limits.wheel_base / max(speed * speed, STANDSTILL)  # tan(angle) for 1 m/s^2
-    angle = wanted
-    if asked.engaged:  # distance from the measured angle [rad]; recorded runs, [3]
+    # distance from the measured angle [rad], while the vehicle follows; recorded runs, [3]
+    if asked.engaged:
         far = by_speed(limits, limits.steering_distance, speed)
         angle, bits = hold(wanted, angle, bits, steering - far, steering + far, _DISTANCE)
     # lateral acceleration [m/s^2]; [1]
@@ -86,48 +98,59 @@ def steer(limits, sent, asked, answer):
         # rate of the angle from command to command [rad/s]; the MPC's own, [3]
         turn = by_speed(limits, limits.steering_rate, speed) * step
         angle, bits = hold(wanted, angle, bits, sent.angle - turn, sent.angle + turn, _RATE)
-    # largest angle [rad]; the vehicle's, [3]
+    # largest angle [rad]; the vehicle's own, [3]
     largest = by_speed(limits, limits.steering_angle, speed)
-    angle, bits = hold(wanted, angle, bits, -largest, largest, _ANGLE)
-    # rate that is sent with the angle [rad/s]; recorded runs
-    most = by_speed(limits, limits.rotation_rate, speed)
-    asked_rate = float(asked.steering_tire_rotation_rate)
-    rate, turned = hold(asked_rate, asked_rate, 0, -most, most, _ROTATION_RATE)
-    if bits:
-        rate *= share(wanted, angle, steering)
-    answer.steering_tire_angle, answer.steering_tire_rotation_rate = angle, rate
-    return bits | turned
+    return hold(wanted, angle, bits, -largest, largest, _ANGLE)
 
 
-def drive(limits, sent, asked, answer):
-    """Hold the velocity and the acceleration; return the bits of the limits that acted.
+def hold_rate(limits, asked, angle, steered):
+    """Hold the steering rate [rad/s] that is sent with the angle; return it and the bits.
 
-    A vehicle above the largest speed, or told to go the other way than it rolls, may only slow
-    down: until it stands, one that speeds up "backward" would speed up forward.
+    Where the angle was clamped, the tyre takes as long for the rest of its way as it would have
+    taken for the whole.
+    """
+    wanted = float(asked.steering_tire_rotation_rate)
+    # rotation rate [rad/s]; recorded runs
+    most = by_speed(limits, limits.rotation_rate, abs(float(asked.speed)))
+    rate, bits = hold(wanted, wanted, 0, -most, most, _ROTATION_RATE)
+    if steered:
+        rate *= share(float(asked.steering_tire_angle), angle, float(asked.steering))
+    return rate, bits
+
+
+def hold_velocity(limits, asked):
+    """Hold the velocity [m/s]; return it and the bits."""
+    wanted = float(asked.velocity)
+    # largest speed [m/s]; [3]
+    return hold(wanted, wanted, 0, -limits.velocity, limits.velocity, _VELOCITY)
+
+
+def hold_acceleration(limits, sent, asked):
+    """Hold the acceleration [m/s^2]; return it and the bits of the limits that acted.
+
+    A vehicle above the largest speed, or asked to go the other way than it rolls, may only slow
+    down: until it is at rest, one that speeds up "backward" would speed up forward.
     Drive may always be dropped at once: the limit of change never lifts a command above zero that
     asks for none, so no clamp makes driving out of braking.
     """
-    speed, velocity = float(asked.speed), float(asked.velocity)
-    wanted, fast = float(asked.acceleration), abs(speed)
-    # largest speed [m/s]; [3]
-    fastest = limits.velocity
-    answer.velocity, bits = hold(velocity, velocity, 0, -fastest, fastest, _VELOCITY)
-    push = wanted
-    if sent.exists:  # change of the acceleration [m/s^3]; max_acc_cmd_diff, min_jerk, [2]
+    speed, wanted = abs(float(asked.speed)), float(asked.acceleration)
+    acceleration, bits = wanted, 0
+    # change of the acceleration [m/s^3]; max_acc_cmd_diff, min_jerk
+    if sent.exists:
         step = step_since(limits, sent, asked)
-        lowest = min(sent.acceleration - by_speed(limits, limits.brake_jerk, fast) * step, 0.0)
-        highest = sent.acceleration + by_speed(limits, limits.jerk, fast) * step
-        push, bits = hold(wanted, push, bits, lowest, highest, _JERK)
-    # acceleration that brakes and that drives [m/s^2]; [3] and [2]
-    brake = by_speed(limits, limits.deceleration, fast)
-    most = by_speed(limits, limits.acceleration, fast)
-    push, bits = hold(wanted, push, bits, -brake, most, _ACCELERATION)
-    # rolling [m/s]: the noise of the odometry
-    turns_round = speed * velocity < 0.0 and fast > limits.rolling_speed
-    if fast > fastest or turns_round:
-        push, bits = hold(wanted, push, bits, -math.inf, 0.0, _VELOCITY)
-    answer.acceleration = push
-    return bits
+        fall = by_speed(limits, limits.brake_jerk, speed) * step
+        lowest = min(sent.acceleration - fall, 0.0)
+        highest = sent.acceleration + by_speed(limits, limits.jerk, speed) * step
+        acceleration, bits = hold(wanted, acceleration, bits, lowest, highest, _JERK)
+    # acceleration that brakes [m/s^2]; [3], and one that drives; [2]
+    brake = by_speed(limits, limits.deceleration, speed)
+    most = by_speed(limits, limits.acceleration, speed)
+    acceleration, bits = hold(wanted, acceleration, bits, -brake, most, _ACCELERATION)
+    # largest speed [m/s]; [3], and the one above which a vehicle rolls; noise of the odometry
+    turns_round = float(asked.speed) * float(asked.velocity) < 0.0
+    if speed > limits.velocity or (turns_round and speed > limits.rolling_speed):
+        acceleration, bits = hold(wanted, acceleration, bits, -math.inf, 0.0, _VELOCITY)
+    return acceleration, bits
 
 
 def hold(wanted, kept, bits, low, high, bit):
@@ -180,6 +203,12 @@ def share(wanted, kept, start):
 def all_finite(a, b, c, d):
     """Whether four numbers are finite."""
     return math.isfinite(a) and math.isfinite(b) and math.isfinite(c) and math.isfinite(d)
+
+
+def refuse(answer):
+    """Answer without values."""
+    answer.steering_tire_angle = answer.steering_tire_rotation_rate = math.nan
+    answer.velocity = answer.acceleration = math.nan
 
 
 def remember(memory, asked, answer):
