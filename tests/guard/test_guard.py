@@ -56,6 +56,20 @@ def test_large_numbers_are_finite_though_their_sum_is_not() -> None:
     decided(fresh().check(huge, 1.7e308, 0.0), Verdict.CLAMPED, 256 | 16)
 
 
+def test_what_overflows_is_judged_as_infinite() -> None:
+    """Without a warning, as plain Python too."""
+    guard, huge = fresh(), 1.7e308
+    decided(guard.check(COMMAND._replace(now=-huge, stamp=-huge), 0.0, 0.0), Verdict.PASSED)
+    refused(guard, COMMAND._replace(now=huge, stamp=-huge, sequence=2), Limit.STALE)
+    late = COMMAND._replace(now=huge, stamp=huge, sequence=2, steering_tire_angle=huge)
+    limits = Limit.ANGLE | Limit.RATE | Limit.STEERING_DISTANCE | Limit.LATERAL_ACCELERATION | 32
+    decided(guard.check(late, 0.0, -huge), Verdict.CLAMPED, limits)
+    back = COMMAND._replace(velocity=-huge, acceleration=1.0)
+    found = fresh().check(back, huge, 0.0)
+    decided(found, Verdict.CLAMPED, Limit.VELOCITY | Limit.LATERAL_ACCELERATION)
+    assert found.acceleration == 0.0
+
+
 @pytest.mark.parametrize(
     ("age", "stale"),
     [(0.0, False), (0.5, False), (0.5000001, True), (-0.001, False), (-0.0011, True)],

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from math import inf, nan, tan
+from math import tan
 from typing import Any
 
 import pytest
@@ -86,15 +86,6 @@ def test_hold(value: float, bounds: list[tuple[int, float, float]], expected: ob
 )
 def test_share(value: float, confined: float, start: float, expected: float) -> None:
     assert rules.share(value, confined, start) == expected
-
-
-@pytest.mark.parametrize("place", range(4))
-@pytest.mark.parametrize("value", [inf, -inf, nan])
-def test_all_finite(place: int, value: float) -> None:
-    numbers = [1.0, -2.0, 0.0, 1e308]
-    assert rules.all_finite(*numbers)
-    numbers[place] = value
-    assert not rules.all_finite(*numbers)
 
 
 def test_what_is_remembered_of_a_command() -> None:

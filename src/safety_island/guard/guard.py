@@ -6,7 +6,7 @@ an interval; ``hold`` moves a value into one after the other, the weakest first.
 come from stands beside each in ``params/sets/island/guard.param.yaml``: ISO 11270 [1] (lane
 keeping), ISO 15622 [2] (adaptive cruise control), Autoware's vehicle_cmd_gate [3].
 
-An input is read as ``float(...)``: as plain Python too, an overflow is infinite without a warning.
+Where inputs may overflow they are read as ``float(...)``, which as plain Python gives no warning.
 """
 
 import math
@@ -46,16 +46,13 @@ def guard_command(params, state, proposal, decision):
 
 def what_is_wrong(limits, memory, asked):
     """Return the bits of what is wrong with a command as a whole, for which it is refused."""
-    now, age = float(asked.now), float(asked.now) - float(asked.stamp)
-    angle, rate = asked.steering_tire_angle, asked.steering_tire_rotation_rate
-    are_finite = all_finite(now, asked.stamp, asked.speed, asked.steering)
-    if not are_finite or not all_finite(angle, rate, asked.velocity, asked.acceleration):
+    if not is_finite(asked):
         return _NOT_FINITE
-    bits = 0
+    age, bits = float(asked.now) - float(asked.stamp), 0
     if not -FUTURE_TOLERANCE_S <= age <= limits.timeout:
         bits |= _STALE
     is_old = memory.is_numbered and asked.sequence <= memory.sequence
-    if is_old or (memory.sent.exists and now < memory.sent.now):
+    if is_old or (memory.sent.exists and asked.now < memory.sent.now):
         bits |= _SEQUENCE
     return bits
 
@@ -78,8 +75,8 @@ def hold_angle(limits, sent, asked):
     the limits of change; nothing leads beyond the largest angle. Lateral acceleration by the
     bicycle model, without slip: speed^2 x tan(angle) / wheelbase.
     """
-    speed, steering = abs(float(asked.speed)), float(asked.steering)
-    wanted = float(asked.steering_tire_angle)
+    speed, steering = abs(float(asked.speed)), asked.steering
+    wanted = asked.steering_tire_angle
     angle, bits = wanted, 0
     per_lateral = limits.wheel_base / max(speed * speed, STANDSTILL)  # tan(angle) for 1 m/s^2
     # distance from the measured angle [rad], while the vehicle follows; recorded runs, [3]
@@ -109,9 +106,9 @@ def hold_rate(limits, asked, angle, steered):
     Where the angle was clamped, the tyre takes as long for the rest of its way as it would have
     taken for the whole.
     """
-    wanted = float(asked.steering_tire_rotation_rate)
+    wanted = asked.steering_tire_rotation_rate
     # rotation rate [rad/s]; recorded runs
-    most = by_speed(limits, limits.rotation_rate, abs(float(asked.speed)))
+    most = by_speed(limits, limits.rotation_rate, abs(asked.speed))
     rate, bits = hold(wanted, wanted, 0, -most, most, _ROTATION_RATE)
     if steered:
         rate *= share(float(asked.steering_tire_angle), angle, float(asked.steering))
@@ -120,7 +117,7 @@ def hold_rate(limits, asked, angle, steered):
 
 def hold_velocity(limits, asked):
     """Hold the velocity [m/s]; return it and the bits."""
-    wanted = float(asked.velocity)
+    wanted = asked.velocity
     # largest speed [m/s]; [3]
     return hold(wanted, wanted, 0, -limits.velocity, limits.velocity, _VELOCITY)
 
@@ -133,7 +130,7 @@ def hold_acceleration(limits, sent, asked):
     Drive may always be dropped at once: the limit of change never lifts a command above zero that
     asks for none, so no clamp makes driving out of braking.
     """
-    speed, wanted = abs(float(asked.speed)), float(asked.acceleration)
+    speed, wanted = abs(asked.speed), asked.acceleration
     acceleration, bits = wanted, 0
     # change of the acceleration [m/s^3]; max_acc_cmd_diff, min_jerk
     if sent.exists:
@@ -185,7 +182,7 @@ def step_since(limits, sent, asked):
     A tick after a late one comes early. It counts as a whole step, down to half of one, and below
     that as twice its time: many commands at once gain nothing.
     """
-    gap = float(asked.now) - sent.now
+    gap = float(asked.now) - float(sent.now)
     return min(max(gap, min(limits.shortest_step, 2.0 * gap)), limits.longest_step)
 
 
@@ -200,9 +197,18 @@ def share(wanted, kept, start):
     return min(max((kept - start) / whole, 0.0), 1.0)
 
 
-def all_finite(a, b, c, d):
-    """Whether four numbers are finite."""
-    return math.isfinite(a) and math.isfinite(b) and math.isfinite(c) and math.isfinite(d)
+def is_finite(asked):
+    """Whether a command and what was measured are numbers that can be compared."""
+    return (
+        math.isfinite(asked.now)
+        and math.isfinite(asked.stamp)
+        and math.isfinite(asked.steering_tire_angle)
+        and math.isfinite(asked.steering_tire_rotation_rate)
+        and math.isfinite(asked.velocity)
+        and math.isfinite(asked.acceleration)
+        and math.isfinite(asked.speed)
+        and math.isfinite(asked.steering)
+    )
 
 
 def refuse(answer):
