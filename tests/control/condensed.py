@@ -12,10 +12,11 @@ from safety_island.control.condense import condense
 from safety_island.control.lateral_state import LATERAL_STATE
 from safety_island.control.qp import MAX_ITERATIONS
 from safety_island.control.qp_records import QP
-from safety_island.control.records import PARAMS, Records
+from safety_island.control.records import PARAMS
 from safety_island.control.solver import solve, solve_within_limits, solve_without_limits
 from safety_island.control.status import MpcStatus, Solver
 from safety_island.kernel.kernel import entry
+from safety_island.kernel.records import Records
 
 INVALID_MATRIX = int(MpcStatus.INVALID_MATRIX)
 SOLVED = int(MpcStatus.SOLVED)

@@ -10,7 +10,8 @@ import pytest
 
 from safety_island.control.geometry import clear_turn, cosine_of_limit, normalize_angle
 from safety_island.control.points import nearest_index, offset_along, segment_of
-from safety_island.control.records import POINT, Records
+from safety_island.control.records import POINT
+from safety_island.kernel.records import Records
 
 FAR = 1e6
 

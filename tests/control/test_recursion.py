@@ -14,10 +14,11 @@ from safety_island import params
 from safety_island.control.gradient import fill_gradient
 from safety_island.control.lateral_state import LATERAL_STATE
 from safety_island.control.qp_records import QP
-from safety_island.control.records import PARAMS, Records
+from safety_island.control.records import PARAMS
 from safety_island.control.recursion import solve_recursively
 from safety_island.control.status import MpcStatus
 from safety_island.kernel.kernel import entry
+from safety_island.kernel.records import Records
 from tests.control.condensed import condense_problem, solve_as_the_controller, solve_condensed
 from tests.control.lateral_rig import Rig
 from tests.control.test_condense import MODELS, random_rig

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from safety_island.control.lateral_state import LATERAL_STATE
-from safety_island.control.records import Records
 from safety_island.control.reference_positions import ensure
 from safety_island.kernel.kernel import entry
+from safety_island.kernel.records import Records
 from tests.control.lateral_rig import Rig, Values, circle, line, make_points, on_path
 
 COLUMNS = ("rx", "ry", "rz", "rv")

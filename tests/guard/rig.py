@@ -6,7 +6,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from safety_island.guard import Decision, Guard, GuardParams, Proposal
+from safety_island.core.guard import Decision, Guard, Proposal
+from safety_island.guard import GuardParams
 
 WHEEL_BASE, TIMEOUT, PERIOD = 2.5, 0.5, 0.1
 

@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from safety_island.guard import Guard, Limit, Proposal, Verdict
+from safety_island.core.guard import Guard, Proposal
+from safety_island.guard import Limit, Verdict
 from safety_island.replay.feed import Replay
 from safety_island.replay.recording import load
 from tests.golden.harness import name_of, parameters_of, run_paths

@@ -8,7 +8,8 @@ from typing import Any
 
 import pytest
 
-from safety_island.guard import Decision, Guard, Limit, Proposal, Verdict
+from safety_island.core.guard import Decision, Guard, Proposal
+from safety_island.guard import Limit, Verdict
 from tests.guard.rig import TIMEOUT, WHEEL_BASE, WIDE, Stream, limited
 
 COMMAND = Proposal(10.0, 10.0, 1, 0.1, 0.2, 3.0, -0.4)
@@ -51,8 +52,22 @@ def test_a_measurement_that_is_not_finite_refuses_too(value: float) -> None:
 def test_large_numbers_are_finite_though_their_sum_is_not() -> None:
     found = fresh().check(COMMAND._replace(velocity=1.7e308, acceleration=1.7e308), 0.0, 0.0)
     decided(found, Verdict.CLAMPED, Limit.VELOCITY | Limit.ACCELERATION)
-    huge = COMMAND._replace(sequence=10**400, velocity=1.7e308)
+    huge = COMMAND._replace(sequence=2**63 - 1, velocity=1.7e308)
     decided(fresh().check(huge, 1.7e308, 0.0), Verdict.CLAMPED, 256 | 16)
+
+
+def test_what_overflows_is_judged_as_infinite() -> None:
+    """Without a warning, as plain Python too."""
+    guard, huge = fresh(), 1.7e308
+    decided(guard.check(COMMAND._replace(now=-huge, stamp=-huge), 0.0, 0.0), Verdict.PASSED)
+    refused(guard, COMMAND._replace(now=huge, stamp=-huge, sequence=2), Limit.STALE)
+    late = COMMAND._replace(now=huge, stamp=huge, sequence=2, steering_tire_angle=huge)
+    limits = Limit.ANGLE | Limit.RATE | Limit.STEERING_DISTANCE | Limit.LATERAL_ACCELERATION | 32
+    decided(guard.check(late, 0.0, -huge), Verdict.CLAMPED, limits)
+    back = COMMAND._replace(velocity=-huge, acceleration=1.0)
+    found = fresh().check(back, huge, 0.0)
+    decided(found, Verdict.CLAMPED, Limit.VELOCITY | Limit.LATERAL_ACCELERATION)
+    assert found.acceleration == 0.0
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,8 @@ from math import isnan, tan
 from hypothesis import given
 from hypothesis import strategies as st
 
-from safety_island.guard import Decision, Guard, Limit, Proposal, Verdict
+from safety_island.core.guard import Decision, Guard, Proposal
+from safety_island.guard import Limit, Verdict
 from safety_island.guard.limit import REFUSALS
 from safety_island.params import load_set
 

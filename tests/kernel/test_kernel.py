@@ -10,6 +10,7 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
+from types import FunctionType, ModuleType
 from typing import Any
 
 import numpy as np
@@ -17,16 +18,10 @@ import pytest
 
 from safety_island.control.follower import TrajectoryFollower
 from safety_island.control.input_check import check_trajectory
-from safety_island.control.records import (
-    INPUTS,
-    PARAMS,
-    POINT,
-    Records,
-    new_points,
-    pack_parameters,
-)
+from safety_island.control.records import INPUTS, PARAMS, POINT, new_points, pack_parameters
 from safety_island.control.status import Refusal
 from safety_island.kernel import kernel
+from safety_island.kernel.records import Records
 from tests.control.lateral_rig import line
 from tests.golden.harness import firmware
 
@@ -143,6 +138,41 @@ def test_a_kernel_that_allocates_does_not_compile() -> None:
 
     with pytest.raises(numba.errors.NumbaError):
         sums(3)
+
+
+@needs_jit
+def test_a_module_is_compiled_from_outside_and_stays_plain_python() -> None:
+    """Its functions call each other, and know of no compiler."""
+    module: Any = ModuleType("rules")
+    exec("def half(x):\n return x / 2.0\n\ndef rule(x):\n return half(x) + 1.0\n", vars(module))
+    rule = module.rule
+    kernel.compile_from_outside(module)
+
+    @kernel.kernel
+    def calls(x: Any) -> Any:
+        return rule(x)
+
+    assert calls(3.0) == module.rule(3.0) == 2.5
+    assert len(calls.signatures) == 1
+    assert module.rule is rule and isinstance(rule, FunctionType)
+
+
+@needs_jit
+def test_only_what_a_module_defines_is_compiled_from_outside() -> None:
+    """What it imports is the business of another module."""
+    import numba
+
+    module: Any = ModuleType("rules")
+    exec("def rule(x):\n return x\n", {"__name__": "elsewhere"}, vars(module))
+    rule = module.rule
+    kernel.compile_from_outside(module)
+
+    @kernel.kernel
+    def calls(x: Any) -> Any:
+        return rule(x)
+
+    with pytest.raises(numba.errors.NumbaError):
+        calls(3.0)
 
 
 @needs_jit

@@ -128,8 +128,8 @@ def test_a_sample_is_drawn_by_lot_and_again_for_the_same_seed(rate: float) -> No
 
 def test_files_are_chosen_by_name() -> None:
     (guard,) = (room for room in ROOMS if room.name == "guard")
-    found = {m.file for m in mutants_of(guard, ["short*", "table.py"])}
-    assert {Path(name).name for name in found} == {"shortcut.py", "table.py"}
+    found = {m.file for m in mutants_of(guard, ["rec*", "limit.py"])}
+    assert {Path(name).name for name in found} == {"records.py", "limit.py"}
 
 
 @pytest.mark.parametrize(

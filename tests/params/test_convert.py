@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 from safety_island.control.limits import MAX_RATE_TABLE
+from safety_island.guard.records import MAX_SPEED_POINTS
 from safety_island.params.convert import NotAllowedError, convert, nearest
 from safety_island.params.schema import KNOWN
 
@@ -54,6 +55,7 @@ def test_allowed(key: str, value: Any, result: Any) -> None:
         ("curvature_list_for_steer_rate_lim", [], "found []; expected a list of 1 to 32 numbers"),
         ("curvature_list_for_steer_rate_lim", [0.1] * (MAX_RATE_TABLE + 1), "a list of 1 to 32"),
         ("curvature_list_for_steer_rate_lim", [0.1, math.nan], "found nan"),
+        ("guard.jerk", [1.0] * (MAX_SPEED_POINTS + 1), "expected a list of 1 to 32 numbers"),
         ("curvature_list_for_steer_rate_lim", [[0.1]], "found [0.1]"),
     ],
 )

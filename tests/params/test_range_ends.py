@@ -10,7 +10,7 @@ import pytest
 
 from safety_island.control.follower import TrajectoryFollower
 from safety_island.control.params import Parameters
-from safety_island.guard import Guard, Proposal
+from safety_island.core.guard import Guard, Proposal
 from safety_island.kernel.kernel import prepare
 from safety_island.params import ParameterError, from_mapping
 from safety_island.params.consistency import TABLES

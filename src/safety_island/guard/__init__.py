@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The guard: independent checks between the controllers and the outputs."""
+"""The guard: independent checks between the controllers and the outputs.
 
-from safety_island.guard.guard import Guard
+Its rules are plain functions without a decorator, and import nothing but mathematics: whoever needs
+them compiled does so from outside (``core/guard.py``).
+"""
+
 from safety_island.guard.limit import EXPLANATIONS, Limit, Verdict
 from safety_island.guard.params import GuardParams
-from safety_island.guard.proposal import Decision, Proposal
 
-__all__ = ["EXPLANATIONS", "Decision", "Guard", "GuardParams", "Limit", "Proposal", "Verdict"]
+__all__ = ["EXPLANATIONS", "GuardParams", "Limit", "Verdict"]

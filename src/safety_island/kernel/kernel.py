@@ -15,6 +15,7 @@ import os
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
+from types import FunctionType, ModuleType
 from typing import TYPE_CHECKING, Any
 
 from safety_island.extras import require
@@ -87,6 +88,21 @@ def kernel(function: Any) -> Any:
     return _njit()(function) if JIT else function
 
 
+def compile_from_outside(module: ModuleType) -> None:
+    """Let kernels call every function that a module defines, as if ``kernel`` marked each.
+
+    The functions stay as they are, plain Python, and the module need not know of any compiler.
+    """
+    if not JIT:
+        return
+    _njit()  # says what is missing where there is no compiler
+    from numba.extending import register_jitable
+
+    for function in vars(module).values():
+        if isinstance(function, FunctionType) and function.__module__ == module.__name__:
+            register_jitable(**FLAGS)(function)
+
+
 class Entry:
     """A kernel that the outside calls: its argument types are fixed when it is defined.
 
@@ -96,11 +112,17 @@ class Entry:
     """
 
     def __init__(
-        self, function: Callable[..., int], arguments: tuple[Any, ...], on_demand: bool
+        self,
+        function: Callable[..., int],
+        arguments: tuple[Any, ...],
+        on_demand: bool,
+        records: dict[str, Any] | None = None,
     ) -> None:
         self.name = function.__name__
         self.python = function
         self.arguments = arguments
+        self.records = function.__globals__ if records is None else records
+        """Where the record types are constants, whose names are those in C."""
         self.call: Callable[..., int] = function
         self._dispatcher: Any = None
         if JIT:
@@ -179,12 +201,16 @@ class Entry:
         return partial(function, *arrays)
 
 
-def entry(*arguments: Any, on_demand: bool = False) -> Callable[[Callable[..., int]], Entry]:
+def entry(
+    *arguments: Any, on_demand: bool = False, records: dict[str, Any] | None = None
+) -> Callable[[Callable[..., int]], Entry]:
     """Mark a kernel that the outside calls, with the type of each argument.
 
     ``on_demand``: few need it, so it is compiled by whoever calls its ``prepare``, not by ours.
+    ``records``: the globals in which the record types are constants, where the kernel's own module
+    does not know them (one that is compiled from outside).
     """
-    return lambda function: Entry(function, arguments, on_demand)
+    return lambda function: Entry(function, arguments, on_demand, records)
 
 
 def is_cached() -> bool:

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from safety_island.package import PACKAGE
 
-ROOMS = ("kernel", "control")
+ROOMS = ("kernel", "control", "guard", "core")
 """Folders of the package that hold kernels, or what they take constants from."""
 
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from safety_island.guard import Guard, Limit, Proposal, Verdict
+from safety_island.core.guard import Guard, Proposal
+from safety_island.guard import Limit, Verdict
 from safety_island.life_cycle.reason import Reason
 from safety_island.messages.status import NO_VALUE
 from safety_island.node.command import Computed
@@ -23,7 +24,6 @@ class Checked(NamedTuple):
 
 
 _PASSED, _CLAMPED, _ = Verdict
-_NONE, _PUBLISHED = Reason.NONE, Outcome.PUBLISHED
 
 
 class CommandCheck:
@@ -53,11 +53,11 @@ class CommandCheck:
         self.sequence += 1
         stamp, other, *values, _ = command
         oldest = other if other < stamp else stamp
-        proposal = tuple.__new__(Proposal, (now, oldest, self.sequence, *values))
+        proposal = Proposal(now, oldest, self.sequence, *values)
         decision = self._guard.check(proposal, speed, steering, engaged)
         self.verdict, self.limits = decision.verdict, decision.limits
         if decision.verdict is _PASSED:
-            return tuple.__new__(Checked, (command, _NONE, _PUBLISHED, ""))
+            return Checked(command)
         if decision.verdict is _CLAMPED:
             return self._clamp(command, decision[2:])
         return self._refuse(command, now - self._timeout_s)

@@ -7,9 +7,9 @@ from collections.abc import Callable, Sequence
 
 from safety_island.can.mode import OutputMode
 from safety_island.control.release import rules_of
+from safety_island.core.guard import Guard
 from safety_island.dds import topics
 from safety_island.dds.topics import TopicEntry
-from safety_island.guard import Guard
 from safety_island.life_cycle.facts import Facts
 from safety_island.life_cycle.life_cycle import LifeCycle
 from safety_island.life_cycle.reason import Reason

@@ -6,7 +6,6 @@ from __future__ import annotations
 from difflib import SequenceMatcher
 from typing import Any
 
-from safety_island.control.limits import MAX_RATE_TABLE
 from safety_island.params.scalars import found
 from safety_island.params.schema import KNOWN, Known
 
@@ -24,7 +23,7 @@ def convert(known: Known, value: Any) -> Any:
     Raises NotAllowedError.
     """
     if known.kind == "list":
-        if isinstance(value, list | tuple) and 1 <= len(value) <= MAX_RATE_TABLE:
+        if isinstance(value, list | tuple) and 1 <= len(value) <= known.most_entries:
             return tuple(_number(known, item) for item in value)
     elif known.kind in ("float", "int"):
         return _number(known, value)

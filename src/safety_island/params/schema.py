@@ -18,6 +18,7 @@ from safety_island.control.params import (
 )
 from safety_island.gate.params import GateParams
 from safety_island.guard.params import GuardParams
+from safety_island.guard.records import MAX_SPEED_POINTS
 from safety_island.life_cycle.params import LifeCycleParams
 
 
@@ -42,6 +43,10 @@ GROUPS: dict[str, Any] = {
 """Attribute of ``IslandParameters`` -> its dataclass."""
 
 
+_LONGEST = {"guard": MAX_SPEED_POINTS}
+"""Most entries of a list, where a group's record does not hold MAX_RATE_TABLE of them."""
+
+
 @dataclass(frozen=True)
 class Known:
     """One parameter."""
@@ -55,6 +60,11 @@ class Known:
     low: float
     high: float
     choices: tuple[str, ...]
+
+    @property
+    def most_entries(self) -> int:
+        """Entries that the record of the kernels holds of a list."""
+        return _LONGEST.get(self.group, MAX_RATE_TABLE)
 
     @property
     def range_text(self) -> str:
@@ -71,7 +81,7 @@ class Known:
         before = {
             "float": "a number from ",
             "int": "a whole number from ",
-            "list": f"a list of 1 to {MAX_RATE_TABLE} numbers from ",
+            "list": f"a list of 1 to {self.most_entries} numbers from ",
             "str": "one of " if self.choices else "",
             "bool": "",
         }

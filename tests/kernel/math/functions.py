@@ -17,12 +17,12 @@ from typing import Any
 
 import numpy as np
 
-from safety_island.control.records import Records, record
 from safety_island.kernel.kernel import Entry, kernel
 from safety_island.kernel.math.exponential import exp, log
 from safety_island.kernel.math.inverse import acos, asin, atan, atan2
 from safety_island.kernel.math.remainder import fmod
 from safety_island.kernel.math.trigonometric import cos, sin, tan
+from safety_island.kernel.records import Records, record
 
 OF_ONE: dict[str, Callable[[float], float]] = {
     "sin": sin,

@@ -94,6 +94,10 @@ PROGRAM = """
 #include "safety_island_messages.h"
 static struct safety_island_params params;
 static struct safety_island_point points[SAFETY_ISLAND_MAX_POINTS];
+static struct safety_island_guard_params limits;
+static struct safety_island_guard_state guard;
+static struct safety_island_guard_proposal proposal;
+static struct safety_island_guard_decision decision;
 
 int main(void) {
   params.traj_resample_dist = 0.1;
@@ -105,6 +109,10 @@ int main(void) {
     if (safety_island_sources[i] != SAFETY_ISLAND_SOURCES[i]) return 100;
   int32_t refusal = safety_island_check_trajectory(&params, points, 1, 0.0);
   if (refusal != SAFETY_ISLAND_REFUSAL_TOO_FEW_POINTS) return 101;
+  proposal.now = 1.0;
+  int32_t verdict = safety_island_guard_command(&limits, &guard, &proposal, &decision);
+  if (verdict != SAFETY_ISLAND_VERDICT_REFUSED) return 102;
+  if (decision.limits != SAFETY_ISLAND_LIMIT_STALE) return 103;
   return safety_island_check_trajectory(&params, points, 5, 0.0);
 }
 """

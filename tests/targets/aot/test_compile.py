@@ -11,8 +11,9 @@ import llvmlite.binding as llvm
 import numpy as np
 import pytest
 
-from safety_island.control.records import POINT, record
+from safety_island.control.records import POINT
 from safety_island.kernel import kernel
+from safety_island.kernel.records import record
 from safety_island.targets.aot import compile as kernel_compile
 from safety_island.targets.aot import ir as kernel_ir
 from safety_island.targets.aot.codegen import compile_object

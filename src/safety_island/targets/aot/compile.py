@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import IO
 
 from safety_island.kernel import kernel
+from safety_island.kernel.entries import all_entries
 from safety_island.package import PACKAGE
 from safety_island.targets.aot import ir as kernel_ir
 from safety_island.targets.errors import BuildError
@@ -45,10 +46,7 @@ def entries(on_demand: bool = False) -> list[kernel.Entry]:
 
     ``on_demand``: also those that only the solver OSQP needs.
     """
-    import safety_island.control.follower
-    import safety_island.control.qp_alone  # noqa: F401  (these two define every entry)
-
-    return kernel.ENTRIES + (kernel.ON_DEMAND if on_demand else [])
+    return all_entries(on_demand)
 
 
 def kernel_irs(report: Report, on_demand: bool = False) -> dict[str, str]:

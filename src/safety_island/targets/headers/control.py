@@ -25,10 +25,11 @@ _SCALARS: dict[Any, str] = {float: "double", int: "int64_t"}
 _TOP = """\
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Control kernels of the safety island, generated from the record types of its control room.
- * One tick: safety_island_lateral_step, then safety_island_longitudinal_step. Every function
- * returns a status, keeps all its memory in the records that it is given, and calls nothing but
- * memset and memcpy. Units: m, s, rad and what follows from them.
+ * Kernels of the safety island, generated from their record types.
+ * One tick: safety_island_lateral_step, safety_island_longitudinal_step, and
+ * safety_island_guard_command for what is to be sent. Every function returns a status, keeps all
+ * its memory in the records that it is given, and calls nothing but memset
+ * and memcpy. Units: m, s, rad and what follows from them.
  */
 #ifndef SAFETY_ISLAND_CONTROL_H
 #define SAFETY_ISLAND_CONTROL_H
@@ -69,7 +70,7 @@ def record_names() -> dict[Any, str]:
     """Return every record type that a kernel takes, with its name: that of the constant."""
     found: dict[Any, str] = {}
     for entry in entries():
-        constants = sorted(entry.python.__globals__.items(), reverse=True)
+        constants = sorted(entry.records.items(), reverse=True)
         known = {value: name for name, value in constants if isinstance(value, np.dtype)}
         for dtype in entry.arguments:
             if dtype not in _SCALARS and dtype not in known:
