@@ -9,7 +9,7 @@ import pytest
 from safety_island.build.kconfig import Resolved, resolve
 from safety_island.build.kconfig_places import Places
 from safety_island.build.targets import NAMES, TARGETS, Target
-from safety_island.can.mode import TARGET_OUTPUT
+from safety_island.can.targets import TARGET_OUTPUT
 from safety_island.errors import ConfigurationError
 
 CONTRACT = {

@@ -4,7 +4,7 @@
 import pytest
 
 from safety_island.build.targets import NAMES, find_target
-from safety_island.can.mode import TARGET_OUTPUT
+from safety_island.can.targets import TARGET_OUTPUT
 from safety_island.errors import ConfigurationError
 
 

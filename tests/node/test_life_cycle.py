@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from safety_island.can.mode import OutputMode
+from safety_island.command.mode import OutputMode
 from safety_island.control.status import Mode, MpcStatus
 from safety_island.guard import Limit, Verdict
 from safety_island.life_cycle.ramp import Motion

@@ -5,10 +5,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from safety_island.can.mode import OutputMode
 from safety_island.cli.status.names import guard_limits_of, name_of
 from safety_island.cli.status.reasons import explained
 from safety_island.cli.status.samples import oldest_input, subject_facts, subject_of
+from safety_island.command.mode import OutputMode
 from safety_island.control.status import Mode, MpcStatus
 from safety_island.life_cycle.reason import Reason
 from safety_island.messages.status_fields import Status

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import math
 
-from safety_island.can.mode import OutputMode
 from safety_island.cli.status.names import (
     flags_of,
     guard_limits_of,
@@ -14,6 +13,7 @@ from safety_island.cli.status.names import (
     verdict_of,
 )
 from safety_island.cli.status.why import flows, held_by, others, why
+from safety_island.command.mode import OutputMode
 from safety_island.control.status import ControllerLimit, LongitudinalState, Mode, MpcStatus
 from safety_island.life_cycle.state import State
 from safety_island.messages.arm import ArmResult

@@ -7,7 +7,6 @@ import math
 from enum import IntEnum
 from typing import Any
 
-from safety_island.can.mode import OutputMode
 from safety_island.cli.status.names import (
     flags_of,
     guard_limits_of,
@@ -16,6 +15,7 @@ from safety_island.cli.status.names import (
     optional_name,
     verdict_of,
 )
+from safety_island.command.mode import OutputMode
 from safety_island.control.status import ControllerLimit, LongitudinalState, Mode, MpcStatus
 from safety_island.gate.reason import SampleReason
 from safety_island.gate.warning import InputWarning
