@@ -32,7 +32,7 @@ from safety_island.build.pyz import write_pyz
 from safety_island.build.revision import revision
 from safety_island.extras import require
 from safety_island.kernel.library import LIBRARY_NAME
-from safety_island.messages import compiled, registry
+from safety_island.messages import registry
 
 Say = Callable[[str], None]
 """Told each step, in words."""
@@ -89,9 +89,7 @@ class Build:
         self._write(DOTCONFIG, self._resolved.dotconfig().encode())
 
     def _messages(self) -> None:
-        structs = [registry.struct_of(name) for name in registry.names()]
-        self._say(f"message types: {len(structs)} from IDL")
-        self._write(compiled.NAME, compiled.dump(structs).encode(), f"messages/{compiled.NAME}")
+        self._say(f"message types: {len(registry.names())} from IDL")
         self._write(MESSAGE_HEADER, message_header().encode(), f"include/{MESSAGE_HEADER}")
 
     def _kernels(self) -> list[KernelObject]:

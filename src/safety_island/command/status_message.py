@@ -31,6 +31,9 @@ TICK = record(
 )
 """What a tick did, where the status tells it in other words."""
 
+SNAPSHOT_LAYOUT = 1
+"""Number of the layout of a snapshot: another one with every change of what an island remembers."""
+
 _DONE = int(Encoding.DONE)
 _OUT_OF_RANGE = int(Encoding.OUT_OF_RANGE)
 _ACTIVE, _HOLD, _STOP = int(State.ACTIVE), int(State.HOLD), int(State.STOP)
@@ -107,6 +110,7 @@ def _write_command(status, command, is_sent):
 def begin_status(messages):
     """Make the status of an island that has not ticked yet: nothing is known, nothing made up."""
     status = messages[0]
+    status.snapshot_layout = SNAPSHOT_LAYOUT
     status.lateral_error = math.nan
     status.yaw_error = math.nan
     status.residual = math.nan

@@ -12,8 +12,9 @@ from functools import cache
 from pathlib import Path
 
 PACKAGE = Path(__file__).parents[1]
-ROOMS = ("kernel", "control", "command")
-"""Folders of the package that hold kernels, or what they take constants from."""
+ROOMS = ("kernel", "control", "command", "life_cycle", "messages")
+"""Folders of the package that hold kernels, or what they take constants and layouts from."""
+_SUFFIXES = {".py", ".idl"}
 
 
 @cache
@@ -26,7 +27,9 @@ def hash_of(package: Path) -> str:
     """Return the hash of the kernel sources of a copy of the package."""
     digest = hashlib.sha256()
     for room in ROOMS:
-        for source in sorted((package / room).rglob("*.py")):
+        for source in sorted((package / room).rglob("*")):
+            if source.suffix not in _SUFFIXES:
+                continue
             place = source.relative_to(package).as_posix()
             digest.update(place.encode() + b"\0" + source.read_bytes() + b"\0")
     return digest.hexdigest()

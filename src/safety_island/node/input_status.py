@@ -38,6 +38,8 @@ def input_values(items: Sequence[Input], ages_s: Sequence[float]) -> list[Any]:
         values += (
             item.refusals,
             item.writer_guid,
+            item.stamp_ns,
+            item.source_ns,
             item.accepted,
             item.subscription.received,
             item.superseded,

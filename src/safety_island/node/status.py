@@ -18,6 +18,7 @@ from safety_island.node.input_status import InputsStatus
 from safety_island.node.outputs import TopicWriter
 from safety_island.node.report import describe
 from safety_island.node.transport import Publisher
+from safety_island.params import parameters_hash
 
 if TYPE_CHECKING:
     from safety_island.node.controller import ControllerNode
@@ -38,6 +39,7 @@ class StatusTopic(TopicWriter):
         self._fields, self._inputs = cells(message.body), InputsStatus(message.body)
         begin_status.bind(message.body)()
         self._fields["output_mode"][0] = int(node.mode)
+        self._fields["parameters_hash"][0] = parameters_hash(node.parameters)
         tick = np.zeros(1, TICK)
         self._tick = cells(tick)
         records = node.follower.trace, node.sender.record, message.body
@@ -61,6 +63,7 @@ class StatusTopic(TopicWriter):
         """Set what the report of a tick says."""
         fields, (state, reason, cause) = self._fields, report.life
         self._tick["is_sent"][0] = report.sent
+        fields["now"][0] = round(report.now * 1e9)
         fields["tick"][0] = report.number
         fields["tick_time"][0] = report.tick_time_s
         fields["lateral_time"][0] = report.lateral_time_s

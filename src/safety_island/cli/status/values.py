@@ -35,11 +35,14 @@ _ENUMS: dict[str, type[IntEnum]] = {
     "arm_result": ArmResult,
 }
 _KEYS = {
+    "now": "now_ns",
     "memory": "memory_bytes",
     "tick_time": "tick_s",
     "lateral_time": "lateral_s",
     "longitudinal_time": "longitudinal_s",
     "lateness": "lateness_s",
+    "sample_stamp": "sample_stamp_ns",
+    "source_time": "source_time_ns",
     "age": "age_s",
     "age_limit": "age_limit_s",
     "transport_delay": "transport_delay_s",
@@ -57,6 +60,7 @@ def status_values(status: Status) -> dict[str, Any]:
     """Return a status; times in s, lengths in m, angles in rad, null for what has no value."""
     named = {
         "stamp": status.stamp._asdict(),
+        "parameters_hash": f"{status.parameters_hash:016x}",
         "subject": input_name(status.subject),
         "controller_limits": flags_of(ControllerLimit, status.controller_limits),
         "guard_limits": guard_limits_of(status.guard_limits),
