@@ -3,26 +3,14 @@
 
 from __future__ import annotations
 
-from typing import Protocol, Self
+from typing import Protocol
 
 from safety_island.dds.topics import TopicEntry
-from safety_island.messages.outputs import Control, decode_control, encode_float64_stamped
+from safety_island.messages.outputs import encode_float64_stamped
 from safety_island.messages.wire import NANOSECONDS
+from safety_island.node.outgoing import OutgoingControl
 from safety_island.node.transport import Publisher
 from safety_island.platform.interfaces import Logger
-
-
-class OutgoingControl(Control):
-    """A command that is to leave, and its message as bytes."""
-
-    message: bytes
-
-    @classmethod
-    def of(cls, message: bytes) -> Self:
-        """Return the command of an ``autoware_control_msgs/msg/Control``."""
-        command = cls._make(decode_control(message))
-        command.message = message
-        return command
 
 
 class Output(Protocol):

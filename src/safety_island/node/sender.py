@@ -12,10 +12,12 @@ from safety_island.command.control_message import write_control
 from safety_island.command.encoding import Encoding
 from safety_island.control.records import COMMAND
 from safety_island.kernel.records import Records
-from safety_island.messages.fixed import FixedMessage, layout
+from safety_island.messages.fixed import FixedMessage, layout, reader
 from safety_island.messages.outputs import CONTROL
+from safety_island.messages.wire import Time
 from safety_island.node.command import Computed
-from safety_island.node.outputs import ControlTopic, OutgoingControl, Output
+from safety_island.node.outgoing import OutgoingControl
+from safety_island.node.outputs import ControlTopic, Output
 from safety_island.node.report import describe
 from safety_island.platform.interfaces import Clock, Logger
 
@@ -40,6 +42,7 @@ class CommandSender:
         self._message = FixedMessage(CONTROL)
         self._pack = Struct(f"={layout(COMMAND)}").pack_into
         self._memory = self.record.view(np.uint8).data
+        self._stamp = reader(self._message.body["stamp"], "sec", "nanosec")
         self._write = write_control.bind(self.record, self._message.body)
 
     def send(self, result: Computed) -> bool:
@@ -48,7 +51,7 @@ class CommandSender:
         if command is None:
             self._logger.error("not sent: the stamp fits no message", throttled=True)
             return False
-        stamp_ns = command.stamp.nanoseconds
+        stamp_ns = Time(*self._stamp()).nanoseconds
         went_out = False
         for output in self.outputs:
             try:
@@ -65,7 +68,7 @@ class CommandSender:
         offset_ns = self._clock.wall_ns() - self._clock.monotonic_ns()
         if self._write(offset_ns) != Encoding.DONE:
             return None
-        return OutgoingControl.of(self._message.to_bytes())
+        return OutgoingControl(self._message.to_bytes())
 
     def listen(self) -> None:
         """Look whether somebody else sends commands, also while the island sends none."""
