@@ -31,7 +31,7 @@ from safety_island.node.outgoing import OutgoingControl
 from safety_island.platform import load
 
 RUN = (sys.executable, "-m", "safety_island", "run")
-COMMAND = Control(Time(1, 2), Time(1, 2), 0.1, 0.2, 3.0, 0.5)
+COMMAND = Control(Time(1, 2), Time(1, 2), 0.125, 0.25, 3.0, 0.5)
 
 
 def tick(outcome: Outcome = Outcome.PUBLISHED, **values: Any) -> TickReport:
@@ -85,7 +85,7 @@ def test_values_of_a_tick() -> None:
     trace = np.zeros(1, TRACE)
     values = tick_values(tick(), trace, AGES)
     assert values["outcome"] == "PUBLISHED"
-    assert values["steering_tire_angle"] == 0.1
+    assert values["steering_tire_angle"] == 0.125
     assert values["longitudinal_state"] == "DRIVE"
     assert values["ages_s"] == AGES
     waiting = tick_values(tick(Outcome.WAITING_FOR_INPUT), trace, AGES)
