@@ -9,8 +9,8 @@ from safety_island.can.command import Cause, Command
 from safety_island.can.decoder import Decoded, decode
 from safety_island.can.link import DirectLink
 from safety_island.can.mock import MockBus
-from safety_island.can.mode import OutputMode
 from safety_island.can.output import CanOutput
+from safety_island.command.mode import OutputMode
 from safety_island.platform.interfaces import CanFrame
 from tests.can.rig import REFERENCE, FakeClock, LogLines
 

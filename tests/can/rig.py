@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 from safety_island.can.command import Command
 from safety_island.can.encoder import Rejection, Triple, encode
-from safety_island.can.mode import OutputMode
+from safety_island.command.mode import OutputMode
 from safety_island.platform.interfaces import LogLevel
 
 REFERENCE = Command(0.125, -0.5, 12.25, -1.5, 0.0, True, True, False)

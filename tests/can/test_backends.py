@@ -19,7 +19,7 @@ from tests.can.peers import ROOT
 
 USE_MOCK = """
 import sys
-from safety_island.can.mode import OutputMode
+from safety_island.command.mode import OutputMode
 from safety_island.can.spec import parse_spec
 from safety_island.can.start import start_output
 start_output(OutputMode.CAN_ONLY, parse_spec("mock"), 0.15, lambda: 0, None)

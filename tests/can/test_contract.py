@@ -13,7 +13,7 @@ import pytest
 
 from safety_island.can.backends import new_link
 from safety_island.can.bus import BusEvent, BusLink, Delivery, EventKind
-from safety_island.can.frames import WATCHED_IDS
+from safety_island.command.frames import WATCHED_IDS
 from safety_island.platform.interfaces import CanFrame, CanResult
 from tests.can.peers import PEERS, Peer, open_peer
 from tests.can.rig import triple, until

@@ -8,9 +8,9 @@ import time
 
 import pytest
 
-from safety_island.can.mode import OutputMode
 from safety_island.can.spec import parse_spec
 from safety_island.can.start import start_output
+from safety_island.command.mode import OutputMode
 from safety_island.messages.outputs import Control
 from safety_island.messages.wire import Time
 from tests.can.rig import LogLines

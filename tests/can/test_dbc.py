@@ -17,8 +17,8 @@ from safety_island.can.command import Command
 from safety_island.can.dbc import dbc_text
 from safety_island.can.dbc_check import check_dbc
 from safety_island.can.encoder import Rejection, encode
-from safety_island.can.frames import FRAMES, LATERAL, LONGITUDINAL
-from safety_island.can.mode import OutputMode
+from safety_island.command.frames import FRAMES, LATERAL, LONGITUDINAL
+from safety_island.command.mode import OutputMode
 from tests.can.rig import triple
 
 FILE = Path(__file__).parents[2] / "config/can/safety_island.dbc"

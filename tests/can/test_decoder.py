@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from safety_island.can.command import Command
 from safety_island.can.decoder import Decoded, Fault, decode, decode_frame
 from safety_island.can.encoder import Rejection, encode
-from safety_island.can.frames import LATERAL, STATUS
-from safety_island.can.mode import OutputMode
+from safety_island.command.frames import LATERAL, STATUS
+from safety_island.command.mode import OutputMode
 from safety_island.platform.interfaces import CanFrame
 from tests.can.rig import REFERENCE, triple
 

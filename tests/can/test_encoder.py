@@ -16,9 +16,9 @@ from hypothesis import strategies as st
 from safety_island.can.candump import format_frame
 from safety_island.can.command import Cause, Command, as_published
 from safety_island.can.decoder import Decoded, decode
-from safety_island.can.encoder import Rejection, Triple, encode, quantise
-from safety_island.can.frames import LATERAL, LONGITUDINAL
-from safety_island.can.mode import OutputMode
+from safety_island.can.encoder import Rejection, Triple, encode
+from safety_island.command.frames import LATERAL, LONGITUDINAL
+from safety_island.command.mode import OutputMode
 from tests.can.rig import REFERENCE, REFERENCE_LINES, REFERENCE_STAMP_NS
 
 INT32_MAX = 2**31 - 1
@@ -156,7 +156,9 @@ def test_limits_of_int32_after_rounding(name: str, raw: float, expected: int | N
 
 @pytest.mark.parametrize("raw", [INT32_MAX + 0.5, INT32_MIN - 0.5])
 def test_a_half_beyond_the_limit_rounds_out_of_range(raw: float) -> None:
-    assert quantise(raw / 1000, SIGNALS["velocity"]) is Cause.OUT_OF_RANGE
+    value = raw / 1000
+    expected = Rejection(0x101, "velocity", value, Cause.OUT_OF_RANGE)
+    assert encode(only("velocity", value), MODE, 0, 0) == expected
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -235,7 +237,7 @@ def test_numpy_scalars_are_scaled_in_double_precision() -> None:
 
 def test_a_value_of_single_precision_is_scaled_in_double() -> None:
     value = np.float32(123.456)  # 123.456001...; as a product in single precision 123456000
-    assert quantise(value, SIGNALS["steering_tire_angle"]) == 123456001  # type: ignore[arg-type]
+    assert raw_of("steering_tire_angle", value) == 123456001
 
 
 def test_the_frames_are_a_tuple_of_plain_bytes_whatever_the_numbers_are_made_of() -> None:

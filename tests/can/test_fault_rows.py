@@ -12,12 +12,12 @@ from safety_island.can.command import Cause, Command
 from safety_island.can.decoder import Decoded
 from safety_island.can.link import DirectLink
 from safety_island.can.mock import MockBus
-from safety_island.can.mode import OutputMode
 from safety_island.can.output import CanOutput
 from safety_island.can.receiver import CommandReceiver, Link, Verdict
 from safety_island.can.spec import parse_spec
 from safety_island.can.start import CanUnavailableError, start_output
 from safety_island.can.triple import Progress
+from safety_island.command.mode import OutputMode
 from safety_island.platform.interfaces import CanFrame, CanResult
 from tests.can.output_rig import PERIOD_S, OutputRig
 from tests.can.rig import REFERENCE, FakeClock, LogLines, triple

@@ -9,8 +9,8 @@ import pytest
 
 from safety_island.can.bus import BusEvent, EventKind
 from safety_island.can.command import Cause, Command
-from safety_island.can.mode import OutputMode
 from safety_island.can.output import CanOutput
+from safety_island.command.mode import OutputMode
 from safety_island.messages.outputs import Control, decode_control, encode_control
 from safety_island.messages.wire import Time
 from safety_island.node.outputs import Output

@@ -7,9 +7,9 @@ import json
 
 from safety_island.can.candump import LogEntry
 from safety_island.can.encoder import Rejection, encode
-from safety_island.can.mode import OutputMode
 from safety_island.can.monitor import BusMonitor
 from safety_island.can.report import command_text, command_values, summary_lines, summary_values
+from safety_island.command.mode import OutputMode
 from tests.can.rig import REFERENCE, triple
 
 

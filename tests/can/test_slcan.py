@@ -11,9 +11,9 @@ import pytest
 
 from safety_island.can.backends import new_link
 from safety_island.can.bus import BusLink
-from safety_island.can.mode import OutputMode
 from safety_island.can.output import CanOutput
 from safety_island.can.spec import BusSpec, parse_spec
+from safety_island.command.mode import OutputMode
 from safety_island.platform.interfaces import CanResult
 from tests.can.rig import REFERENCE, REFERENCE_LINES, LogLines, triple, until
 from tests.can.slcan_adapter import SlcanAdapter

@@ -14,10 +14,10 @@ import pytest
 from safety_island.can.backends import new_link
 from safety_island.can.bus import EventKind
 from safety_island.can.command import Cause
-from safety_island.can.mode import OutputMode
 from safety_island.can.output import CanOutput
 from safety_island.can.socketcan import is_held_back, refuse_without_carrier
 from safety_island.can.spec import BusSpec
+from safety_island.command.mode import OutputMode
 from safety_island.platform.interfaces import CanError
 from tests.can.fake_socketcan import ERROR_FLAG, FakeKernel, fake_socketcan
 from tests.can.rig import REFERENCE, FakeClock, LogLines

@@ -5,9 +5,10 @@ from __future__ import annotations
 
 import pytest
 
-from safety_island.can.mode import TARGET_OUTPUT, OutputMode
 from safety_island.can.spec import parse_spec
 from safety_island.can.start import CanUnavailableError, start_output
+from safety_island.can.targets import TARGET_OUTPUT
+from safety_island.command.mode import OutputMode
 from safety_island.errors import ConfigurationError
 from tests.can.rig import REFERENCE, FakeClock, LogLines
 

@@ -11,9 +11,9 @@ import pytest
 from safety_island.can import thread_link
 from safety_island.can.bus import BusEvent, Delivery, EventKind
 from safety_island.can.command import Cause
-from safety_island.can.mode import OutputMode
 from safety_island.can.output import CanOutput
 from safety_island.can.thread_link import ThreadLink
+from safety_island.command.mode import OutputMode
 from safety_island.platform.interfaces import CanError, CanResult
 from tests.can.blocking_bus import BlockingBus
 from tests.can.rig import REFERENCE, LogLines, triple, until

@@ -22,15 +22,16 @@ from safety_island.control.records import TRACE
 from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State
 from safety_island.life_cycle.transition import Life
-from safety_island.messages.outputs import Control
+from safety_island.messages.outputs import Control, encode_control
 from safety_island.messages.wire import Time
 from safety_island.node import Outcome, TickReport
 from safety_island.node.input_set import NO_SUBJECT
 from safety_island.node.inputs import INPUTS
+from safety_island.node.outgoing import OutgoingControl
 from safety_island.platform import load
 
 RUN = (sys.executable, "-m", "safety_island", "run")
-COMMAND = Control(Time(1, 2), Time(1, 2), 0.1, 0.2, 3.0, 0.5)
+COMMAND = Control(Time(1, 2), Time(1, 2), 0.125, 0.25, 3.0, 0.5)
 
 
 def tick(outcome: Outcome = Outcome.PUBLISHED, **values: Any) -> TickReport:
@@ -49,7 +50,7 @@ def tick(outcome: Outcome = Outcome.PUBLISHED, **values: Any) -> TickReport:
         longitudinal_time_s=0.0005,
         ages_s=(0.1,) * (len(INPUTS) - 1) + (math.inf,),
         refused=0,
-        command=COMMAND if published else None,
+        outgoing=OutgoingControl(encode_control(COMMAND)) if published else None,
     )
     return report._replace(**values)
 
@@ -84,7 +85,7 @@ def test_values_of_a_tick() -> None:
     trace = np.zeros(1, TRACE)
     values = tick_values(tick(), trace, AGES)
     assert values["outcome"] == "PUBLISHED"
-    assert values["steering_tire_angle"] == 0.1
+    assert values["steering_tire_angle"] == 0.125
     assert values["longitudinal_state"] == "DRIVE"
     assert values["ages_s"] == AGES
     waiting = tick_values(tick(Outcome.WAITING_FOR_INPUT), trace, AGES)

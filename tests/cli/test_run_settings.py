@@ -7,12 +7,13 @@ from ipaddress import IPv4Address, IPv4Interface
 
 import pytest
 
-from safety_island.can.mode import TARGET_OUTPUT, OutputMode
 from safety_island.can.spec import BusSpec
+from safety_island.can.targets import TARGET_OUTPUT
 from safety_island.cli import run
 from safety_island.cli.configuration import resolved, run_configuration
 from safety_island.cli.parser import Parser
 from safety_island.cli.run_settings import HOSTED, RunSettings, run_settings
+from safety_island.command.mode import OutputMode
 from safety_island.dds.config import DdsConfig
 from safety_island.errors import ConfigurationError
 from safety_island.platform import LogConfig, LogLevel

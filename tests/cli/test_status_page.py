@@ -56,6 +56,7 @@ def test_every_field_stands_on_it_with_its_meaning(name: str) -> None:
     assert all(field.meaning.endswith(".") for field in fields)
     assert {field.unit for field in fields} <= {
         "",
+        "ns",
         "s",
         "m",
         "m/s",

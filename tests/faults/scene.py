@@ -9,8 +9,8 @@ from typing import NamedTuple
 
 from safety_island.can.link import DirectLink
 from safety_island.can.mock import MockBus
-from safety_island.can.mode import OutputMode
 from safety_island.can.output import CanOutput
+from safety_island.command.mode import OutputMode
 from safety_island.control.follower import TrajectoryFollower
 from safety_island.control.status import Mode
 from safety_island.dds import topics

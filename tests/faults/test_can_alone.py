@@ -8,7 +8,7 @@ from random import Random
 import pytest
 
 from safety_island.can.bus import BusEvent, EventKind
-from safety_island.can.frames import WATCHED_IDS
+from safety_island.command.frames import WATCHED_IDS
 from safety_island.control.status import Mode
 from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fields of a record as cells that can be set."""
+"""Records: how they are laid out, and their fields as cells that can be set."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import pytest
 
 from safety_island.control.lateral_state import LATERAL_STATE
 from safety_island.control.records import INPUTS, TRACE
-from safety_island.kernel.records import cells
+from safety_island.kernel.records import cells, record
 
 NUMBERS = {"f": 1.5, "i": -3, "u": 3, "b": True}
 
@@ -26,3 +26,15 @@ def test_arrays_and_records_within_it_have_none() -> None:
     found = cells(np.zeros(1, TRACE))
     assert set(TRACE.names) - set(found) == {"u"}
     assert not {"rx", "steering_filter"} & set(cells(np.zeros(1, LATERAL_STATE)))
+
+
+def test_records_within_records_are_laid_out_as_c_does() -> None:
+    inner = record([("value", "f8"), ("flag", "?")])
+    middle = record([("small", "u1"), ("rows", inner, (2,)), ("last", "?")])
+    outer = record([("small", "u1"), ("middle", middle), ("inner", inner)])
+    assert [inner.itemsize, middle.itemsize, outer.itemsize] == [16, 48, 72]
+    assert [middle.fields[name][1] for name in middle.names] == [0, 8, 40]
+    assert [outer.fields[name][1] for name in outer.names] == [0, 8, 56]
+    found = np.zeros(1, outer)[0]
+    found.middle.rows[1].value, found.inner.flag = 2.5, True
+    assert found.middle.rows[1].value == 2.5 and found["inner"]["flag"]

@@ -12,6 +12,14 @@ from safety_island.kernel.entries import all_entries
 from safety_island.kernel.sources import ROOMS, hash_of, sources_hash
 from safety_island.package import PACKAGE
 
+PLACES = (
+    "control/geometry.py",
+    "control/records.py",
+    "kernel/kernel.py",
+    "life_cycle/state.py",
+    "messages/idl/safety_island_msgs/msg/Status.idl",
+)
+
 
 @pytest.fixture
 def package(tmp_path: Path) -> Path:
@@ -25,7 +33,7 @@ def test_a_copy_of_the_same_sources_has_the_same_hash(package: Path) -> None:
     assert hash_of(package) == sources_hash()
 
 
-@pytest.mark.parametrize("place", ["control/geometry.py", "control/records.py", "kernel/kernel.py"])
+@pytest.mark.parametrize("place", PLACES)
 def test_any_edit_of_a_source_is_another_hash(package: Path, place: str) -> None:
     """Also in a file that only an imported function stands in."""
     with (package / place).open("a") as file:

@@ -14,8 +14,14 @@ from hypothesis import strategies as st
 
 from safety_island.messages import codec, registry
 from safety_island.messages.description import Array, Field, Named, Primitive, Struct
-from safety_island.messages.errors import IdlError
-from safety_island.messages.fixed import layout, record_type
+from safety_island.messages.errors import DecodeError, IdlError
+from safety_island.messages.fixed import (
+    FixedMessage,
+    body_size,
+    check_flags,
+    layout,
+    record_type,
+)
 from tests.messages.strategies import messages
 
 FIXED = ("Arm", "InputStatus", "Status")
@@ -53,18 +59,66 @@ def test_the_record_is_the_c_struct(short: str) -> None:
     assert aligned.itemsize == kind.itemsize
 
 
-@pytest.mark.parametrize("kind", [Primitive.DOUBLE, Named("geometry_msgs/msg/Vector3")])
-def test_fields_that_would_need_padding_are_refused(
-    kind: Any, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    fields = (Field("small", Primitive.UINT8), Field("large", Array(kind, 2)))
-    structs = {"pkg/msg/Padded": Struct("pkg/msg/Padded", fields)}
+@pytest.fixture
+def structs(monkeypatch: pytest.MonkeyPatch) -> dict[str, Struct]:
+    """Messages of the test, known beside those of the files."""
+    made: dict[str, Struct] = {}
     known = registry.struct_of
     monkeypatch.setattr(
-        "safety_island.messages.fixed.struct_of", lambda name: structs.get(name) or known(name)
+        "safety_island.messages.fixed.struct_of", lambda name: made.get(name) or known(name)
     )
-    with pytest.raises(IdlError, match="not in an order without padding"):
-        record_type.__wrapped__("pkg/msg/Padded")
+    return made
+
+
+def add(structs: dict[str, Struct], name: str, *kinds: Any) -> str:
+    fields = tuple(Field(f"f{number}", kind) for number, kind in enumerate(kinds))
+    structs[name] = Struct(name, fields)
+    return name
+
+
+@pytest.mark.parametrize("kind", [Primitive.DOUBLE, Named("geometry_msgs/msg/Vector3")])
+def test_gaps_that_both_have_are_written(structs: dict[str, Struct], kind: Any) -> None:
+    name = add(structs, "pkg/msg/Gap", Primitive.UINT8, Array(kind, 2), Primitive.BOOLEAN)
+    found = record_type.__wrapped__(name)
+    assert found.fields["f1"][1] == 8
+    assert struct.calcsize("<" + layout(found)) == body_size(found) == found.itemsize - 7
+
+
+@pytest.mark.parametrize("follower", [Primitive.UINT8, Primitive.FLOAT])
+def test_a_layout_that_c_and_cdr_do_not_share_is_refused(
+    structs: dict[str, Struct], follower: Primitive
+) -> None:
+    inner = add(structs, "pkg/msg/Inner", Primitive.DOUBLE, Primitive.BOOLEAN)
+    name = add(structs, "pkg/msg/Outer", Named(inner), follower)
+    with pytest.raises(IdlError, match="C and CDR would lay out its fields differently"):
+        record_type.__wrapped__(name)
+
+
+def test_a_message_in_memory_is_the_message() -> None:
+    name = "autoware_control_msgs/msg/Control"
+    message = FixedMessage(name)
+    assert message.to_bytes() == codec.encode(name, {})
+    control = message.body[0]
+    control.stamp.sec, control.lateral.steering_tire_angle = -2, 0.25
+    control.lateral.is_defined_steering_tire_rotation_rate = True
+    control.longitudinal.jerk, control.longitudinal.is_defined_jerk = 0.5, True
+    lateral = {"steering_tire_angle": 0.25, "is_defined_steering_tire_rotation_rate": True}
+    longitudinal = {"jerk": 0.5, "is_defined_jerk": True}
+    parts = {"stamp": {"sec": -2}, "lateral": lateral, "longitudinal": longitudinal}
+    assert message.to_bytes() == codec.encode(name, parts)
+    assert message.body.ctypes.data % 8 == 0
+
+
+@pytest.mark.parametrize("place", [44, 76, 77])
+def test_a_boolean_is_zero_or_one(place: int) -> None:
+    name = "autoware_control_msgs/msg/Control"
+    data = bytearray(FixedMessage(name).to_bytes())
+    for value in (0, 1):
+        data[place] = value
+        check_flags(bytes(data), record_type(name), name)
+    data[place] = 2
+    with pytest.raises(DecodeError):
+        check_flags(bytes(data), record_type(name), name)
 
 
 def test_a_message_without_fixed_size_is_refused() -> None:

@@ -52,9 +52,11 @@ FIELDS = {
     "rmw_dds_common/msg/NodeEntitiesInfo": "node_namespace node_name reader_gid_seq writer_gid_seq",
     "rmw_dds_common/msg/ParticipantEntitiesInfo": "gid node_entities_info_seq",
     "safety_island_msgs/msg/Arm": "stamp nonce",
-    "safety_island_msgs/msg/InputStatus": "refused writer_guid accepted received superseded"
-    " refused_in_a_row age age_limit transport_delay warnings last_refusal other_writers",
-    "safety_island_msgs/msg/Status": "stamp arm_nonce tick commands memory foreign_can_frames"
+    "safety_island_msgs/msg/InputStatus": "refused writer_guid sample_stamp source_time"
+    " accepted received superseded refused_in_a_row age age_limit transport_delay warnings"
+    " last_refusal other_writers",
+    "safety_island_msgs/msg/Status": "stamp now arm_nonce tick commands memory foreign_can_frames"
+    " parameters_hash snapshot_layout"
     " lateral_error yaw_error residual stop_dist target_vel command_angle command_rate"
     " command_velocity command_acceleration"
     " tick_time lateral_time longitudinal_time lateness missed_periods"

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 from rosbags.typesys import get_types_from_idl, get_types_from_msg
 
-from safety_island.can.mode import OutputMode
+from safety_island.command.mode import OutputMode
 from safety_island.control.status import ControllerLimit
 from safety_island.gate.reason import SampleReason
 from safety_island.gate.warning import InputWarning

@@ -38,7 +38,7 @@ WARM = ("safety_island.control.follower", "safety_island.params", "tests.conftes
 """Slow to import; what they import of the rooms below is forgotten again."""
 
 ABOVE = (
-    *("gate", "life_cycle", "guard", "core", "can", "params", "bridge", "node"),
+    *("gate", "life_cycle", "guard", "command", "core", "can", "params", "bridge", "node"),
     *("sim", "replay", "cli", "bench"),
 )
 """Rooms that are mutated or import one that is; a fork imports them anew."""
@@ -84,7 +84,7 @@ ROOMS = (
     Room("gate", ("gate",), ("tests/gate", PAGE)),
     Room("life_cycle", ("life_cycle",), ("tests/life_cycle", PAGE)),
     Room("guard", ("guard", "core/guard.py"), ("tests/guard", "tests/core", PAGE)),
-    Room("can/encoder.py", ("can/encoder.py",), ("tests/can/test_encoder.py",)),
+    Room("command", ("command", "can/encoder.py"), ("tests/command", "tests/can/test_encoder.py")),
     Room("node", ("node",), ("tests/node",)),
     Room("bridge", ("bridge",), ("tests/bridge",)),
 )

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from safety_island.can.mode import OutputMode
+from safety_island.command.mode import OutputMode
 from safety_island.control.records import COMMAND, POINT, TRACE, new_points
 from safety_island.control.status import Mode, MpcStatus, Refusal
 from safety_island.dds import topics

@@ -10,6 +10,7 @@ from safety_island.dds import topics
 from safety_island.messages.outputs import Control, decode_float64_stamped
 from safety_island.messages.wire import Time
 from safety_island.node.memory import MemoryPublisher
+from safety_island.node.outgoing import OutgoingControl
 from safety_island.node.report import Outcome
 from tests.node.rig import ROWS, FakeFollower, Rig
 
@@ -21,11 +22,11 @@ class RecordingOutput:
         self.name = name
         self.failed = 0
         self.works = works
-        self.sent: list[tuple[Control, int]] = []
+        self.sent: list[tuple[OutgoingControl, int]] = []
         self.foreign_frames = 0
         self.closed = False
 
-    def send(self, command: Control, stamp_ns: int) -> bool:
+    def send(self, command: OutgoingControl, stamp_ns: int) -> bool:
         self.sent.append((command, stamp_ns))
         return self.works
 

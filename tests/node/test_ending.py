@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import pytest
 
-from safety_island.can.mode import OutputMode
+from safety_island.command.mode import OutputMode
 from safety_island.control.status import Mode
 from safety_island.dds import topics
 from safety_island.life_cycle.reason import Reason

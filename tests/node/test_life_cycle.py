@@ -8,13 +8,14 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from safety_island.can.mode import OutputMode
+from safety_island.command.mode import OutputMode
 from safety_island.control.status import Mode, MpcStatus
 from safety_island.guard import Limit, Verdict
 from safety_island.life_cycle.ramp import Motion
 from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State
 from safety_island.messages.outputs import Control
+from safety_island.node.outgoing import OutgoingControl
 from safety_island.node.report import Outcome, TickReport
 from tests.node.rig import ROWS, FakeFollower, Rig
 from tests.node.test_controller_output import RecordingOutput
@@ -50,7 +51,7 @@ def can_only(follower: FakeFollower) -> tuple[Rig, RecordingOutput]:
     return rig, can
 
 
-def motion(command: Control) -> tuple[float, float, float]:
+def motion(command: Control | OutgoingControl) -> tuple[float, float, float]:
     return (
         command.steering_tire_angle,
         round(command.velocity, 6),

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from safety_island.command.status_message import SNAPSHOT_LAYOUT
 from safety_island.control.status import ControllerLimit, LongitudinalState, Mode, MpcStatus
 from safety_island.dds import topics
 from safety_island.gate.reason import SampleReason
@@ -16,10 +17,13 @@ from safety_island.gate.warning import InputWarning
 from safety_island.guard import Verdict
 from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State
+from safety_island.messages.inputs import Steering
 from safety_island.messages.status import NO_VALUE, decode_status
 from safety_island.messages.status_fields import InputStatus, Status
+from safety_island.messages.wire import Time
 from safety_island.node.input_status import input_values
 from safety_island.node.inputs import INPUTS
+from safety_island.params import parameters_hash
 from safety_island.platform import Tick
 from tests.node.rig import ROWS, FakeFollower, Rig
 from tests.node.test_life_cycle import tick
@@ -150,15 +154,37 @@ def test_before_anything_came_nothing_is_made_up(rig: Rig, heard: Any) -> None:
 def test_the_inputs_are_told_in_the_order_of_the_message(rig: Rig) -> None:
     item = rig.node.inputs.items[ODOMETRY]
     item.refusals[4], item.writer_guid = 1, bytes(range(16))
+    item.message, item.source_ns = Steering(Time(8, 9), 0.0), 10
     item.accepted, item.subscription.received, item.superseded, item.refused_in_a_row = 2, 3, 4, 5
     item.stamps.delay_s, item.warnings, item.last_refusal = 0.25, 6, 7
     item.writers.update(frozenset({b"a" * 16}), 0.0)
     item.writers.update(frozenset({b"a" * 16, b"b" * 16}), 1.0)
     counts = (0, 1, *(0,) * 30)
+    times, numbers = (8_000_000_009, 10), (2, 3, 4, 5)
     expected = InputStatus(
-        counts, item.writer_guid, 2, 3, 4, 5, 0.125, item.age_limit_s, 0.25, 6, 7, 1
+        counts, item.writer_guid, *times, *numbers, 0.125, item.age_limit_s, 0.25, 6, 7, 1
     )
     refusals, *rest = input_values([item], [0.125])
     found = InputStatus(tuple(np.frombuffer(refusals, "<u4").tolist()), *rest)
     assert found == expected
     assert input_values([item, item], [0.125, 0.125])[len(found) :] == [refusals, *rest]
+
+
+def test_what_an_exact_replay_needs(rig: Rig, heard: Any) -> None:
+    rig.tick(0.15)
+    status = heard()
+    assert {(item.sample_stamp, item.source_time) for item in status.inputs} == {(0, 0)}
+    rig.clock.set_wall_offset_ns(7_000_000_000)
+    rig.everything(ROWS)
+    sent = rig.clock.wall_ns()
+    rig.tick(0.15)
+    rig.tick(0.15)
+    status = heard()
+    assert status.now == rig.clock.monotonic_ns() == sent + 300_000_000 - 7_000_000_000
+    assert {(item.sample_stamp, item.source_time) for item in status.inputs} == {(sent, sent)}
+    rig.clock.advance_to_ns(rig.clock.monotonic_ns() + 150_000_000)
+    rig.send(topics.ODOMETRY, b"\0\1\0\0")
+    rig.node.tick()
+    assert heard().inputs[ODOMETRY].source_time == sent  # of what is in force
+    assert status.parameters_hash == parameters_hash(rig.node.parameters)
+    assert status.snapshot_layout == SNAPSHOT_LAYOUT

@@ -103,7 +103,7 @@ def test_the_bytes_are_those_that_the_node_sent(tmp_path: Path) -> None:
     for tick in range(TICKS):
         published, sent = player.tick(tick), player.node.sender.command
         assert published is not None and sent is not None
-        assert published[:6] == sent[:6]
+        assert published[:6] == sent.control[:6]
 
 
 def test_a_tick_without_a_command_has_no_verdict(tmp_path: Path) -> None:

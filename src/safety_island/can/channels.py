@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from safety_island.can.candump import LogEntry
-from safety_island.can.frames import COMMAND_IDS
+from safety_island.command.frames import COMMAND_IDS
 from safety_island.errors import ConfigurationError
 
 

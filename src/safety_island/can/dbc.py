@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from decimal import Decimal
 
-from safety_island.can.frames import FRAME_BYTES, FRAMES, Frame, Signal
+from safety_island.command.frames import FRAME_BYTES, FRAMES, Frame, Signal
 
 SENDER = "SafetyIsland"
 RECEIVER = "Vehicle"

@@ -11,8 +11,8 @@ from safety_island.can.command import Command
 from safety_island.can.dbc import signal_limits
 from safety_island.can.decoder import decode_frame
 from safety_island.can.encoder import Triple, encode
-from safety_island.can.frames import FRAME_BYTES, FRAMES, Frame, Signal
-from safety_island.can.mode import OutputMode
+from safety_island.command.frames import FRAME_BYTES, FRAMES, Frame, Signal
+from safety_island.command.mode import OutputMode
 from safety_island.platform.interfaces import CanFrame
 
 _SAMPLES = (

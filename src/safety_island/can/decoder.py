@@ -8,8 +8,8 @@ from enum import StrEnum
 from typing import NamedTuple
 
 from safety_island.can.command import Command
-from safety_island.can.frames import FRAME_BYTES, FRAMES, STATUS, Frame
-from safety_island.can.mode import OutputMode
+from safety_island.command.frames import FRAME_BYTES, FRAMES, STATUS, Frame
+from safety_island.command.mode import OutputMode
 from safety_island.platform.interfaces import CanFrame
 
 

@@ -1,17 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Encoder of the three frames: a pure function that follows the table of ``frames``."""
+"""The three frames of a command, as the kernel of ``command.can_frames`` encodes them."""
 
 from __future__ import annotations
 
-from math import isfinite
+from functools import cache
+from struct import Struct
 from typing import NamedTuple
 
-from safety_island.can.command import Cause, Command
-from safety_island.can.frames import FRAME_BYTES, FRAMES, STATUS, Frame, Signal, limits_text
-from safety_island.can.mode import OutputMode
-from safety_island.platform.interfaces import CanFrame
+import numpy as np
 
-NS_PER_MS = 1_000_000
+from safety_island.can.command import Cause, Command
+from safety_island.command.can_frames import CAN_COMMAND, CAN_FRAMES, encode_frames
+from safety_island.command.encoding import Encoding
+from safety_island.command.frames import FRAMES, STATUS, limits_text
+from safety_island.command.mode import OutputMode
+from safety_island.messages.fixed import layout
+from safety_island.platform.interfaces import CanFrame
 
 Triple = tuple[CanFrame, ...]
 """The three frames of a command in the order of ``FRAMES``; empty when the mode uses no CAN."""
@@ -33,33 +37,50 @@ class Rejection(NamedTuple):
         return f"{self.signal} is {self.value:.10g}, expected {allowed} (int32 after scaling)"
 
 
-def quantise(value: float, signal: Signal) -> int | Cause:
-    """Return value x scale as a raw integer, rounded half away from zero, or why that fails.
+class Encoder:
+    """Memory for one command and its frames, and the kernel that goes from one to the other."""
 
-    The product is formed in double precision, so it is exact for a value of single precision.
-    """
-    scaled = float(value) * signal.scale
-    if not isfinite(scaled):
-        return Cause.OUT_OF_RANGE if isfinite(value) else Cause.NOT_FINITE
-    raw = int(scaled)
-    rest = scaled - raw
-    if rest >= 0.5:
-        raw += 1
-    elif rest <= -0.5:
-        raw -= 1
-    return raw if signal.lowest <= raw <= signal.highest else Cause.OUT_OF_RANGE
+    def __init__(self) -> None:
+        command, frames = np.zeros(1, CAN_COMMAND), np.zeros(1, CAN_FRAMES)
+        self._pack = Struct(f"={layout(CAN_COMMAND)}").pack_into
+        self._command = command.view(np.uint8).data
+        self._frames = frames
+        self._payloads = frames[0].frame["payload"]
+        self._encode = encode_frames.bind(command, frames)
+
+    def encode(
+        self, command: Command, mode: OutputMode, sequence: int, stamp_ns: int
+    ) -> Triple | Rejection:
+        """Return the frames of a command: three, none when the mode uses no CAN, or a rejection."""
+        self._pack(self._command, 0, *command)
+        result = self._encode(int(mode), sequence, stamp_ns)
+        if result == Encoding.DONE:
+            payloads = self._payloads
+            return tuple(
+                CanFrame(arbitration_id, payloads[index].tobytes())
+                for index, arbitration_id in enumerate(_IDS)
+            )
+        return () if result == Encoding.NOT_USED else self._rejection(command, Encoding(result))
+
+    def _rejection(self, command: Command, why: Encoding) -> Rejection:
+        field = int(self._frames[0].rejected)
+        name = CAN_COMMAND.names[field]
+        return Rejection(
+            _FRAME_OF.get(name, STATUS.arbitration_id), name, command[field], _CAUSES[why]
+        )
 
 
-def _pack(frame: Frame, values: dict[str, float]) -> CanFrame | Rejection:
-    word = 0
-    for signal in frame.signals:
-        value = values[signal.name]
-        # A scaled value must fit; a counter wraps.
-        raw = quantise(value, signal) if signal.scale > 1 else int(value)
-        if isinstance(raw, Cause):
-            return Rejection(frame.arbitration_id, signal.name, value, raw)
-        word |= (raw & signal.mask) << signal.start_bit
-    return CanFrame(frame.arbitration_id, word.to_bytes(FRAME_BYTES, "little"))
+_IDS = tuple(frame.arbitration_id for frame in FRAMES)
+_FRAME_OF = {signal.name: frame.arbitration_id for frame in FRAMES for signal in frame.signals}
+_CAUSES = {
+    Encoding.NOT_FINITE: Cause.NOT_FINITE,
+    Encoding.OUT_OF_RANGE: Cause.OUT_OF_RANGE,
+}
+
+
+@cache
+def _encoder() -> Encoder:
+    return Encoder()
 
 
 def encode(command: Command, mode: OutputMode, sequence: int, stamp_ns: int) -> Triple | Rejection:
@@ -69,27 +90,4 @@ def encode(command: Command, mode: OutputMode, sequence: int, stamp_ns: int) -> 
     milliseconds modulo 2^32. A value that is not finite or does not fit int32 rejects the command
     before any frame exists; so does a jerk that is defined and not finite.
     """
-    if not mode.uses_can:
-        return ()
-    if command.is_defined_jerk and not isfinite(command.jerk):
-        return Rejection(STATUS.arbitration_id, "jerk", command.jerk, Cause.NOT_FINITE)
-    values: dict[str, float] = {
-        "steering_tire_angle": command.steering_tire_angle,
-        "steering_tire_rotation_rate": command.steering_tire_rotation_rate,
-        "velocity": command.velocity,
-        "acceleration": command.acceleration,
-        "mode": mode,
-        "steering_rate_defined": command.is_defined_steering_tire_rotation_rate,
-        "acceleration_defined": command.is_defined_acceleration,
-        "jerk_defined": command.is_defined_jerk,
-        "frame_valid": 1,
-        "sequence": sequence,
-        "timestamp": stamp_ns // NS_PER_MS,
-    }
-    frames = []
-    for frame in FRAMES:
-        packed = _pack(frame, values)
-        if isinstance(packed, Rejection):
-            return packed
-        frames.append(packed)
-    return tuple(frames)
+    return _encoder().encode(command, mode, sequence, stamp_ns)

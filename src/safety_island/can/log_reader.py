@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from safety_island.can.candump import LogEntry, parse_line
-from safety_island.can.frames import COMMAND_IDS, FRAME_BYTES
 from safety_island.can.log_files import LogError, LogKind, as_text, kind_of, lines_of, unpacked
 from safety_island.can.log_lines import END_OF_HEADER, AscLines, LogLines, LogNotes, length_is_wrong
+from safety_island.command.frames import COMMAND_IDS, FRAME_BYTES
 
 __all__ = ["STANDARD_INPUT", "LogError", "LogNotes", "read_log"]
 

@@ -9,9 +9,9 @@ from typing import NamedTuple
 
 from safety_island.can.candump import LogEntry
 from safety_island.can.decoder import Decoded, Fault
-from safety_island.can.frames import FRAMES
 from safety_island.can.receiver import LOST_PERIODS, SEQUENCE_MODULUS, Link, sequence_advance
 from safety_island.can.triple import Progress, TripleAssembler
+from safety_island.command.frames import FRAMES
 
 TIMESTAMP_MODULUS = 1 << 32
 RECENT = 64

@@ -11,11 +11,11 @@ from safety_island.can.bus import BusEvent, BusLink, Delivery, EventKind, Monoto
 from safety_island.can.command import Cause, ControlFields, as_published
 from safety_island.can.counters import CanCounters
 from safety_island.can.encoder import Rejection, Triple, encode
-from safety_island.can.frames import FRAMES
-from safety_island.can.mode import OutputMode
 from safety_island.can.output_log import OutputLog
 from safety_island.can.receiver import SEQUENCE_MODULUS
 from safety_island.can.recovery import Recovery, Remedy
+from safety_island.command.frames import FRAMES
+from safety_island.command.mode import OutputMode
 from safety_island.platform.interfaces import CanFrame, CanResult, Logger
 
 FOREIGN_S = 1.0

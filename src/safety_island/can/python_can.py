@@ -11,10 +11,10 @@ import can
 
 from safety_island.can.bus import BusEvent, EventKind, MonotonicNs
 from safety_island.can.bus_errors import events_of, result_of
-from safety_island.can.frames import FRAMES, WATCHED_IDS
 from safety_island.can.python_can_bus import check_spec, close_bus, discard_output, open_bus
 from safety_island.can.socketcan import COMMAND_FILTERS, is_held_back, refuse_without_carrier
 from safety_island.can.spec import Backend, BusSpec
+from safety_island.command.frames import FRAMES, WATCHED_IDS
 from safety_island.platform.interfaces import CanError, CanFrame, CanResult
 
 POLL_LIMIT = 256

@@ -6,8 +6,8 @@ from __future__ import annotations
 from typing import Any
 
 from safety_island.can.decoder import Decoded
-from safety_island.can.frames import FRAMES, LATERAL, LONGITUDINAL, STATUS, Signal
 from safety_island.can.monitor import Arrivals, BusMonitor, Seen
+from safety_island.command.frames import FRAMES, LATERAL, LONGITUDINAL, STATUS, Signal
 
 _VALUES = LATERAL.signals + LONGITUDINAL.signals
 _FLAGS = {

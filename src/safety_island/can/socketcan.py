@@ -8,7 +8,7 @@ import struct
 from contextlib import suppress
 from pathlib import Path
 
-from safety_island.can.frames import WATCHED_IDS
+from safety_island.command.frames import WATCHED_IDS
 from safety_island.platform.interfaces import CanError
 
 COMMAND_FILTERS = [{"can_id": i, "can_mask": 0x7FF, "extended": False} for i in sorted(WATCHED_IDS)]

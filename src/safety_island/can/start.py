@@ -5,9 +5,9 @@ from __future__ import annotations
 
 from safety_island.can.backends import new_link
 from safety_island.can.bus import MonotonicNs
-from safety_island.can.mode import OutputMode
 from safety_island.can.output import CanOutput, Recorder
 from safety_island.can.spec import BusSpec
+from safety_island.command.mode import OutputMode
 from safety_island.errors import ConfigurationError
 from safety_island.platform.interfaces import CanError, Logger
 

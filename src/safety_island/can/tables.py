@@ -7,8 +7,9 @@ import re
 from collections.abc import Callable, Iterable
 
 from safety_island.can.backends import BACKENDS
-from safety_island.can.frames import FRAMES, Signal
-from safety_island.can.mode import TARGET_OUTPUT, OutputMode
+from safety_island.can.targets import TARGET_OUTPUT
+from safety_island.command.frames import FRAMES, Signal
+from safety_island.command.mode import OutputMode
 from safety_island.errors import ConfigurationError
 
 _BLOCK = re.compile(r"(<!-- table: (\w+) -->\n).*?(<!-- end -->)", re.DOTALL)

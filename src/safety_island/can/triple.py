@@ -6,7 +6,7 @@ from __future__ import annotations
 from enum import StrEnum
 
 from safety_island.can.decoder import Decoded, Fault, decode
-from safety_island.can.frames import COMMAND_IDS, FRAMES
+from safety_island.command.frames import COMMAND_IDS, FRAMES
 from safety_island.platform.interfaces import CanFrame
 
 _ORDER = tuple(frame.arbitration_id for frame in FRAMES)

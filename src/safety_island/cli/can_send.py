@@ -10,9 +10,9 @@ from decimal import Decimal, InvalidOperation
 
 from safety_island.can.command import Command
 from safety_island.can.encoder import Rejection, Triple, encode
-from safety_island.can.mode import OutputMode
 from safety_island.can.receiver import SEQUENCE_MODULUS
 from safety_island.cli.can_monitor import DEFAULT_BUS
+from safety_island.command.mode import OutputMode
 from safety_island.errors import IslandError
 
 _NS_PER_S = 1_000_000_000

@@ -11,9 +11,10 @@ import socket
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from safety_island.can.mode import TARGET_OUTPUT, OutputMode
 from safety_island.can.spec import BusSpec, parse_spec
+from safety_island.can.targets import TARGET_OUTPUT
 from safety_island.cli.options import check_realtime, peers_and_tags
+from safety_island.command.mode import OutputMode
 from safety_island.dds.config import URI, DdsConfig, user_xml
 from safety_island.errors import ConfigurationError
 from safety_island.platform import LogConfig, LogLevel

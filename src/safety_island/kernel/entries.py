@@ -11,6 +11,9 @@ MODULES = (
     "safety_island.control.follower",
     "safety_island.control.qp_alone",
     "safety_island.core.guard",
+    "safety_island.command.can_frames",
+    "safety_island.command.control_message",
+    "safety_island.command.status_message",
 )
 
 

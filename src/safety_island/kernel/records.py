@@ -16,8 +16,35 @@ Records = npt.NDArray[Any]
 
 
 def record(columns: list[Any]) -> Any:
-    """Return a C-aligned record type whose fields read as attributes."""
-    return np.dtype((np.record, np.dtype(columns, align=True)))
+    """Return a C-aligned record type whose fields read as attributes, those of inner records too.
+
+    ``columns``: name and type of each field, and its shape when it is an array.
+    """
+    placed: Any = np.dtype(
+        [(name, _plain(kind), *shape) for name, kind, *shape in columns], align=True
+    )
+    layout: Any = {
+        "names": placed.names,
+        "formats": [(kind, *shape) if shape else kind for _, kind, *shape in columns],
+        "offsets": [placed.fields[name][1] for name in placed.names],
+        "itemsize": placed.itemsize,
+        "aligned": True,
+    }
+    return np.dtype((np.record, np.dtype(layout)))
+
+
+def _plain(kind: Any) -> Any:
+    """Return the type without attributes: one with them has lost its alignment."""
+    kind = np.dtype(kind)
+    if kind.subdtype:
+        base, shape = kind.subdtype
+        return np.dtype((_plain(base), shape))
+    if not kind.names:
+        return kind
+    fields = [kind.fields[name] for name in kind.names]
+    formats, offsets = [_plain(inner) for inner, *_ in fields], [at for _, at, *_ in fields]
+    layout: Any = {"names": kind.names, "formats": formats, "offsets": offsets}
+    return np.dtype(layout | {"itemsize": kind.itemsize, "aligned": True})
 
 
 def cells(records: Records) -> dict[str, memoryview[Any]]:

@@ -13,8 +13,9 @@ from pathlib import Path
 
 from safety_island.package import PACKAGE
 
-ROOMS = ("kernel", "control", "guard", "core")
-"""Folders of the package that hold kernels, or what they take constants from."""
+ROOMS = ("kernel", "control", "command", "life_cycle", "guard", "core", "messages")
+"""Folders of the package that hold kernels, or what they take constants and layouts from."""
+_SUFFIXES = {".py", ".idl"}
 
 
 @cache
@@ -27,7 +28,9 @@ def hash_of(package: Path) -> str:
     """Return the hash of the kernel sources of a copy of the package."""
     digest = hashlib.sha256()
     for room in ROOMS:
-        for source in sorted((package / room).rglob("*.py")):
+        for source in sorted((package / room).rglob("*")):
+            if source.suffix not in _SUFFIXES:
+                continue
             place = source.relative_to(package).as_posix()
             digest.update(place.encode() + b"\0" + source.read_bytes() + b"\0")
     return digest.hexdigest()

@@ -6,7 +6,7 @@ from __future__ import annotations
 from struct import Struct
 from typing import NamedTuple
 
-from safety_island.messages import wire
+from safety_island.messages.fixed import check_flags, layout, record_type
 from safety_island.messages.framed import of_size
 from safety_island.messages.wire import HEADER_LE, Time
 
@@ -14,7 +14,8 @@ CONTROL = "autoware_control_msgs/msg/Control"
 FLOAT64_STAMPED = "tier4_debug_msgs/msg/Float64Stamped"
 FLOAT32_STAMPED = "autoware_internal_debug_msgs/msg/Float32Stamped"
 
-_CONTROL = Struct("<4s iIiI iIiI ff B3x iIiI fff BB")
+_RECORD = record_type(CONTROL)
+_CONTROL = Struct("<4s" + layout(_RECORD))
 _FLOAT64 = Struct("<4siId")
 _FLOAT32 = Struct("<4siIf")
 
@@ -74,10 +75,8 @@ def encode_control(command: Control) -> bytes:
 def decode_control(data: bytes) -> Control:
     """Return the command of an autoware_control_msgs/msg/Control; DecodeError when it is none."""
     data = of_size(data, _CONTROL.size, CONTROL)
+    check_flags(data, _RECORD, CONTROL)
     found = _CONTROL.unpack_from(data)
-    rate_defined, acceleration_defined, jerk_defined = (
-        wire.read_bool(found[i], CONTROL) for i in (11, 19, 20)
-    )
     return Control(
         stamp=Time(*found[1:3]),
         longitudinal_stamp=Time(*found[12:14]),
@@ -86,9 +85,9 @@ def decode_control(data: bytes) -> Control:
         velocity=found[16],
         acceleration=found[17],
         jerk=found[18],
-        is_defined_steering_tire_rotation_rate=rate_defined,
-        is_defined_acceleration=acceleration_defined,
-        is_defined_jerk=jerk_defined,
+        is_defined_steering_tire_rotation_rate=found[11],
+        is_defined_acceleration=found[19],
+        is_defined_jerk=found[20],
         lateral_stamp=Time(*found[5:7]),
     )
 

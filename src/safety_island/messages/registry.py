@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 
-from safety_island.messages import compiled
 from safety_island.messages.description import Struct
 from safety_island.messages.errors import UnknownTypeError
 from safety_island.messages.idl import parse_idl
@@ -47,9 +46,6 @@ def ros_type_name(dds_name: str) -> str:
 
 @cache
 def _structs() -> dict[str, Struct]:
-    built = files(__package__).joinpath(compiled.NAME)
-    if built.is_file():
-        return compiled.load(built.read_text(encoding="utf-8"))
     found: dict[str, Struct] = {}
     root = files(__package__).joinpath("idl")
     for package in root.iterdir():

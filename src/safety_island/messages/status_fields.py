@@ -13,6 +13,8 @@ class InputStatus(NamedTuple):
 
     refused: tuple[int, ...]
     writer_guid: bytes
+    sample_stamp: int
+    source_time: int
     accepted: int
     received: int
     superseded: int
@@ -29,11 +31,14 @@ class Status(NamedTuple):
     """What the island did in one tick, and why; enumerations are numbers."""
 
     stamp: Time
+    now: int
     arm_nonce: int
     tick: int
     commands: int
     memory: int
     foreign_can_frames: int
+    parameters_hash: int
+    snapshot_layout: int
     lateral_error: float
     yaw_error: float
     residual: float

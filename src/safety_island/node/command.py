@@ -1,13 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""From the follower's record to the message, and what keeps a command from being sent."""
+"""The follower's record as numbers, and what keeps a command from being sent."""
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
 from safety_island.life_cycle.ramp import Motion
-from safety_island.messages.outputs import Control
-from safety_island.messages.wire import NANOSECONDS, Time
 
 
 class Computed(NamedTuple):
@@ -31,24 +29,7 @@ class Computed(NamedTuple):
             return "lateral"
         return "" if self.longitudinal_stamp >= oldest else "longitudinal"
 
-    def to_control(self, wall_offset_ns: int) -> Control:
-        """Return the message, its stamps on the wall clock.
-
-        The acceleration is always defined (the firmware leaves that flag unset), the jerk never.
-        """
-        stamp, longitudinal_stamp, angle, rate, velocity, acceleration, has_rate = self
-        own = to_time(stamp, wall_offset_ns)
-        other = own if longitudinal_stamp == stamp else to_time(longitudinal_stamp, wall_offset_ns)
-        flags = (has_rate, True, False)
-        message = (own, other, angle, rate, velocity, acceleration, 0.0, *flags, None)
-        return tuple.__new__(Control, message)  # its own constructor takes twice as long
-
 
 def substitute(motion: Motion, now: float) -> Computed:
     """Return a command of the life cycle as if the controllers had computed it at ``now`` [s]."""
     return Computed(now, now, *motion, is_defined_steering_tire_rotation_rate=True)
-
-
-def to_time(monotonic_s: float, wall_offset_ns: int) -> Time:
-    """Return the wall-clock stamp of a time on the monotonic clock [s]."""
-    return tuple.__new__(Time, divmod(int(monotonic_s * 1e9) + wall_offset_ns, NANOSECONDS))

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from safety_island.can.mode import OutputMode
+from safety_island.command.mode import OutputMode
 from safety_island.control.release import rules_of
 from safety_island.core.guard import Guard
 from safety_island.dds import topics

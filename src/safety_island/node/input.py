@@ -25,6 +25,7 @@ from safety_island.gate.stamps import StampGate
 from safety_island.gate.writers import Writers
 from safety_island.messages.errors import DecodeError
 from safety_island.messages.status import INPUT_RECORD, NO_VALUE
+from safety_island.messages.wire import Time
 from safety_island.node.follower import InputFollower
 from safety_island.node.inputs import InputSpec
 from safety_island.node.report import describe
@@ -91,6 +92,8 @@ class Input:
         """Writer of the sample in force."""
         self.message: Any = None
         """The sample in force, decoded."""
+        self.source_ns = 0
+        """When it was published, by its sender's clock; 0 before the first."""
         self._kept_to = b""
         """From whom alone the subscription receives; empty: from all."""
         self._kept_out = 0
@@ -198,7 +201,7 @@ class Input:
 
         It was received after ``since`` [s].
         """
-        data, _, guid = sample
+        data, source_ns, guid = sample
         self.taken, self.writer_guid = sample, guid
         try:
             message = self._decode(data)
@@ -217,6 +220,7 @@ class Input:
             return self._refuse(SampleReason.FAULT, describe(error))
         self.stamps.hold(data, now)
         self.source_guid, self.message, self.accepted_at = guid, message, since
+        self.source_ns = source_ns
         self.accepted += 1
         self.refused_in_a_row = 0
         if self._count is not None:
@@ -232,6 +236,12 @@ class Input:
             text = "%d orientations contradict the path and were replaced, %d since the start"
             site = f"{self.topic} replaced"
             self._logger.warning(text, count, self.replaced_total, throttled=True, site=site)
+
+    @property
+    def stamp_ns(self) -> int:
+        """Stamp of the sample in force, by its sender's clock [ns]; 0 before the first."""
+        stamp: Time | None = None if self.message is None else self.message.stamp
+        return 0 if stamp is None else stamp.nanoseconds
 
     def is_unusable(self, now: float) -> bool:
         """Whether its publisher has sent samples within the age limit, but none can be used."""

@@ -6,8 +6,9 @@ from __future__ import annotations
 from typing import Protocol
 
 from safety_island.dds.topics import TopicEntry
-from safety_island.messages.outputs import Control, encode_control, encode_float64_stamped
+from safety_island.messages.outputs import encode_float64_stamped
 from safety_island.messages.wire import NANOSECONDS
+from safety_island.node.outgoing import OutgoingControl
 from safety_island.node.transport import Publisher
 from safety_island.platform.interfaces import Logger
 
@@ -19,7 +20,7 @@ class Output(Protocol):
     failed: int
     """Commands that it could not take."""
 
-    def send(self, command: Control, stamp_ns: int) -> bool:
+    def send(self, command: OutgoingControl, stamp_ns: int) -> bool:
         """Send a command with its wall-clock stamp [ns]; False when it did not go out.
 
         Never waits longer than a tenth of a period, never raises, and counts and logs why.
@@ -66,10 +67,10 @@ class ControlTopic(TopicWriter):
 
     _stands = False
 
-    def send(self, command: Control, stamp_ns: int) -> bool:
+    def send(self, command: OutgoingControl, stamp_ns: int) -> bool:
         """Publish a command; its stamps are in it."""
         self._stands = True
-        return self.write(encode_control(command))
+        return self.write(command.message)
 
     def listen(self) -> int:
         """Other publishers are found by discovery (Identity)."""

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from safety_island.life_cycle.transition import Life
 from safety_island.messages.outputs import Control
+from safety_island.node.outgoing import OutgoingControl
 
 
 class Outcome(IntEnum):
@@ -65,8 +66,13 @@ class TickReport(NamedTuple):
     """Age of each input, in the order of ``inputs.INPUTS``."""
     refused: int
     """Samples that were refused in this tick; ``ControllerNode.inputs`` has the reasons."""
-    command: Control | None
-    """The command, also when it was not sent; None when there was none."""
+    outgoing: OutgoingControl | None
+    """The command as its message, also when it was not sent; None when there was none."""
+
+    @property
+    def command(self) -> Control | None:
+        """The command, also when it was not sent; None when there was none."""
+        return None if self.outgoing is None else self.outgoing.control
 
     @property
     def sent(self) -> bool:

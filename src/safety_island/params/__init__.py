@@ -2,6 +2,7 @@
 """Parameter sets: Autoware's own YAML files, checked, over the sets that are shipped."""
 
 from safety_island.params.describe import Row, describe
+from safety_island.params.fingerprint import parameters_hash
 from safety_island.params.layers import Ignored
 from safety_island.params.loader import (
     Loaded,
@@ -33,6 +34,7 @@ __all__ = [
     "load",
     "load_set",
     "notes",
+    "parameters_hash",
     "read",
     "replace",
     "with_period",

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from safety_island.can.mode import OutputMode
+from safety_island.command.mode import OutputMode
 from safety_island.control.status import Mode, MpcStatus
 from safety_island.life_cycle.reason import Reason
 from safety_island.messages.status_fields import Status

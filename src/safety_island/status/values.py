@@ -7,7 +7,7 @@ import math
 from enum import IntEnum
 from typing import Any
 
-from safety_island.can.mode import OutputMode
+from safety_island.command.mode import OutputMode
 from safety_island.control.status import ControllerLimit, LongitudinalState, Mode, MpcStatus
 from safety_island.gate.reason import SampleReason
 from safety_island.gate.warning import InputWarning
@@ -35,11 +35,14 @@ _ENUMS: dict[str, type[IntEnum]] = {
     "arm_result": ArmResult,
 }
 _KEYS = {
+    "now": "now_ns",
     "memory": "memory_bytes",
     "tick_time": "tick_s",
     "lateral_time": "lateral_s",
     "longitudinal_time": "longitudinal_s",
     "lateness": "lateness_s",
+    "sample_stamp": "sample_stamp_ns",
+    "source_time": "source_time_ns",
     "age": "age_s",
     "age_limit": "age_limit_s",
     "transport_delay": "transport_delay_s",
@@ -57,6 +60,7 @@ def status_values(status: Status) -> dict[str, Any]:
     """Return a status; times in s, lengths in m, angles in rad, null for what has no value."""
     named = {
         "stamp": status.stamp._asdict(),
+        "parameters_hash": f"{status.parameters_hash:016x}",
         "subject": input_name(status.subject),
         "controller_limits": flags_of(ControllerLimit, status.controller_limits),
         "guard_limits": guard_limits_of(status.guard_limits),

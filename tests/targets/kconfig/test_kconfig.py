@@ -6,7 +6,7 @@ from pathlib import Path
 import kconfiglib
 import pytest
 
-from safety_island.can.mode import TARGET_OUTPUT
+from safety_island.can.targets import TARGET_OUTPUT
 from safety_island.errors import ConfigurationError
 from safety_island.targets.kconfig.places import Places
 from safety_island.targets.kconfig.resolve import Resolved, resolve

@@ -3,7 +3,7 @@
 
 import pytest
 
-from safety_island.can.mode import TARGET_OUTPUT
+from safety_island.can.targets import TARGET_OUTPUT
 from safety_island.errors import ConfigurationError
 from safety_island.targets.kconfig.targets import NAMES, find_target
 

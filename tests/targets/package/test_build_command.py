@@ -101,7 +101,7 @@ def test_a_build_shows_its_steps_and_a_second_one_does_nothing(
     assert capsys.readouterr().out.endswith("up to date, nothing to do\n")
     assert {path: path.stat().st_mtime_ns for path in folder.rglob("*")} == times
     assert "CONFIG_LOG_LEVEL=2\n" in (folder / ".config").read_text()
-    (folder / "messages" / "compiled.json").write_text("{}")
+    (folder / "include" / "safety_island_messages.h").write_text("")
     assert main(["build", "-t", "posix", "-D", "LOG_LEVEL=2"]) == 0
     assert "done" in capsys.readouterr().out
 

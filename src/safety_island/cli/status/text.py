@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 
-from safety_island.can.mode import OutputMode
+from safety_island.command.mode import OutputMode
 from safety_island.control.status import ControllerLimit, LongitudinalState, Mode, MpcStatus
 from safety_island.life_cycle.state import State
 from safety_island.messages.arm import ArmResult

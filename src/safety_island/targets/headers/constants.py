@@ -7,6 +7,7 @@ import inspect
 from collections.abc import Iterator
 from enum import IntEnum, IntFlag
 
+from safety_island.command.encoding import Encoding
 from safety_island.control import limits, status
 from safety_island.control.longitudinal_state import LIST_CAPACITY
 from safety_island.guard import limit
@@ -25,7 +26,7 @@ def sizes() -> Iterator[str]:
 
 def enumerations() -> Iterator[str]:
     """Yield the lines of each enumeration: what a status or a field of a record means."""
-    for kind in (*vars(status).values(), *vars(limit).values()):
+    for kind in (*vars(status).values(), *vars(limit).values(), Encoding):
         if not inspect.isclass(kind) or not issubclass(kind, IntEnum | IntFlag):
             continue
         if kind in (IntEnum, IntFlag):

@@ -6,34 +6,29 @@ from __future__ import annotations
 import json
 
 from safety_island.kernel.library import LIBRARY_NAME, LIBRARY_PLACE
-from safety_island.messages import compiled
 from safety_island.package import PACKAGE
 from safety_island.targets.package.built import ABOUT, DOTCONFIG, FOLDER
 from safety_island.targets.package.dependencies import files, packages
 from safety_island.targets.package.revision import Revision, package_files
 
 _NAME = PACKAGE.name
-_NOT_CARRIED = {".idl"}
-"""Suffixes of what the build has turned into something else."""
 
 
 def content(target: str, revision: Revision, made: dict[str, bytes]) -> dict[str, bytes]:
     """Return the bytes of every file by its place.
 
-    ``made`` holds ``.config``, the library and the message types by the names that they have here.
+    ``made`` holds ``.config`` and the library by the names that they have here.
     """
     found: dict[str, bytes] = {}
     for package in packages():
         found |= {place.as_posix(): source.read_bytes() for place, source in files(package)}
     for path in package_files():
-        if path.suffix not in _NOT_CARRIED:
-            found[f"{_NAME}/{path.relative_to(PACKAGE).as_posix()}"] = path.read_bytes()
+        found[f"{_NAME}/{path.relative_to(PACKAGE).as_posix()}"] = path.read_bytes()
     about = {"target": target, "revision": shown(revision)}
     found |= {
         f"{_NAME}/{FOLDER}/{ABOUT}": (json.dumps(about, sort_keys=True) + "\n").encode(),
         f"{_NAME}/{FOLDER}/{DOTCONFIG}": made[DOTCONFIG],
         f"{_NAME}/{LIBRARY_PLACE}": made[LIBRARY_NAME],
-        f"{_NAME}/messages/{compiled.NAME}": made[compiled.NAME],
     }
     return found
 

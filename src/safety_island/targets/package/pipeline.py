@@ -8,7 +8,7 @@ from typing import Any
 
 from safety_island.extras import require
 from safety_island.kernel.library import LIBRARY_NAME
-from safety_island.messages import compiled, registry
+from safety_island.messages import registry
 from safety_island.targets.aot.archive import archive
 from safety_island.targets.aot.linker import check_header, link_shared, needed_compiler
 from safety_island.targets.aot.machines import Machine, machine_of
@@ -89,9 +89,7 @@ class Build:
         self._write(DOTCONFIG, self._resolved.dotconfig().encode())
 
     def _messages(self) -> None:
-        structs = [registry.struct_of(name) for name in registry.names()]
-        self._say(f"message types: {len(structs)} from IDL")
-        self._write(compiled.NAME, compiled.dump(structs).encode(), f"messages/{compiled.NAME}")
+        self._say(f"message types: {len(registry.names())} from IDL")
         self._write(MESSAGE_HEADER, message_header().encode(), f"include/{MESSAGE_HEADER}")
 
     def _kernels(self) -> list[KernelObject]:

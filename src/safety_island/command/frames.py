@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from safety_island.can.mode import OutputMode
+from safety_island.command.mode import OutputMode
 
 FRAME_BYTES = 8
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 
 import pytest
 
-from safety_island.can.frames import COMMAND_IDS, FRAME_BYTES, FRAMES, Frame, limits_text
-from safety_island.can.mode import TARGET_OUTPUT, OutputMode, TargetOutput
+from safety_island.can.targets import TARGET_OUTPUT, TargetOutput
+from safety_island.command.frames import COMMAND_IDS, FRAME_BYTES, FRAMES, Frame, limits_text
+from safety_island.command.mode import OutputMode
 
 CONTRACT = {
     # signal: identifier, first bit, bits, signed, scale, unit; written down from the contract
