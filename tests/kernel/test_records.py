@@ -8,7 +8,7 @@ import pytest
 
 from safety_island.control.lateral_state import LATERAL_STATE
 from safety_island.control.records import INPUTS, TRACE
-from safety_island.kernel.records import cells
+from safety_island.kernel.records import cells, record
 
 NUMBERS = {"f": 1.5, "i": -3, "u": 3, "b": True}
 
@@ -26,3 +26,16 @@ def test_arrays_and_records_within_it_have_none() -> None:
     found = cells(np.zeros(1, TRACE))
     assert set(TRACE.names) - set(found) == {"u"}
     assert not {"rx", "steering_filter"} & set(cells(np.zeros(1, LATERAL_STATE)))
+
+
+def test_a_record_within_a_record_is_where_c_has_it() -> None:
+    """NumPy alone would place it without regard to its alignment."""
+    inner = record([("flag", "?"), ("number", "f8")])
+    pair = record([("n", "i4"), ("inner", inner, (2,))])
+    outer = record([("flag", "?"), ("inner", inner), ("pair", pair), ("last", "?")])
+    assert [outer.fields[name][1] for name in outer.names] == [0, 8, 24, 64]
+    assert [pair.fields[name][1] for name in pair.names] == [0, 8]
+    assert (inner.itemsize, pair.itemsize, outer.itemsize) == (16, 40, 72)
+    memory = np.zeros(1, outer)
+    memory[0].pair.inner[1].number = 2.5
+    assert memory["pair"]["inner"]["number"].tolist() == [[0.0, 2.5]]

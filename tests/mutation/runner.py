@@ -22,6 +22,7 @@ from typing import Any
 import pytest
 from hypothesis import Phase, settings
 
+from safety_island.kernel import kernel
 from tests.mutation.mutants import Mutant
 
 ROOT = Path(__file__).parents[2]
@@ -147,6 +148,7 @@ def start(room: Room, mutant: Mutant | None, limit_s: int) -> int:
     status = 1
     try:
         _silence()
+        kernel.JIT = False  # compiled code is that of the file, which no mutant changes
         if mutant is not None:
             finder: Any = _Mutated(ROOT / mutant.file, mutant.tree)
             sys.meta_path.insert(0, finder)

@@ -25,7 +25,7 @@ _SCALARS: dict[Any, str] = {float: "double", int: "int64_t"}
 _TOP = """\
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Control kernels of the safety island, generated from the record types of its control room.
+ * Kernels of the safety island, generated from the record types of its rooms.
  * One tick: safety_island_lateral_step, then safety_island_longitudinal_step. Every function
  * returns a status, keeps all its memory in the records that it is given, and calls nothing but
  * the C maths library, memset and memcpy. Units: m, s, rad and what follows from them.

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Record types: the memory that kernels work on, with a layout that C knows as well."""
+"""Records, of which all memory of the kernels is made: C-aligned, so that the type is the C struct.
+
+A kernel takes a record as an array of shape (1,) and indexes it inside.
+"""
 
 from __future__ import annotations
 
@@ -13,8 +16,32 @@ Records = npt.NDArray[Any]
 
 
 def record(columns: list[Any]) -> Any:
-    """Return a C-aligned record type whose fields read as attributes."""
-    return np.dtype((np.record, np.dtype(columns, align=True)))
+    """Return a C-aligned record type whose fields read as attributes.
+
+    A column is a name, a type and perhaps a shape; the type may be a record type itself, of which
+    NumPy forgets the alignment: places are those of the plain structures.
+    """
+    plain: Any = np.dtype(
+        [(name, _plain(kind), *shape) for name, kind, *shape in columns], align=True
+    )
+    whole: Any = {
+        "names": plain.names,
+        "formats": [(kind, *shape) if shape else kind for _, kind, *shape in columns],
+        "offsets": [plain.fields[name][1] for name in plain.names],
+        "itemsize": plain.itemsize,
+    }
+    return np.dtype((np.record, np.dtype(whole, align=True)))
+
+
+def _plain(kind: Any) -> Any:
+    """Return a type without np.record in it, at whatever depth."""
+    kind = np.dtype(kind)
+    if kind.subdtype is not None:
+        return np.dtype((_plain(kind.subdtype[0]), kind.subdtype[1]))
+    if kind.names is None:
+        return kind
+    columns = [(name, _plain(kind.fields[name][0])) for name in kind.names]
+    return np.dtype(columns, align=True)
 
 
 def cells(records: Records) -> dict[str, memoryview[Any]]:

@@ -63,7 +63,7 @@ class StatusTopic(TopicWriter):
         check, overrun, arming, inputs = node.check, self._overrun, node.arming, node.inputs
         mode = inputs.operation_mode
         errors, solver, states, limits = self._trace.last
-        sent, others = report.sent, len(node.identity.islands.others)
+        sent, others = report.sent, node.identity.islands.count
         return encode_values(
             *divmod(node.clock.wall_ns(), NANOSECONDS),
             arming.nonce,
