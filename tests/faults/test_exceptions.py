@@ -27,7 +27,6 @@ PLACES: dict[str, Callable[[Scene], tuple[Any, str]]] = {
     "follower.sync": lambda scene: (scene.follower, "sync"),
     "check": lambda scene: (scene.node._path, "check"),
     "life_cycle.judge": lambda scene: (scene.node.life_cycle, "judge"),
-    "life_cycle.overrun": lambda scene: (scene.node.life_cycle.overrun, "tick"),
     "life_cycle.begin": lambda scene: (scene.node.life_cycle, "begin"),
     "arming": lambda scene: (scene.node.arming, "take"),
     "processing time": lambda scene: (scene.node._times, "send"),

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Records: how they are laid out, and their fields as cells that can be set."""
 
+"""Fields of a record as cells that can be set."""
+
 from __future__ import annotations
 
 import numpy as np
@@ -38,3 +40,16 @@ def test_records_within_records_are_laid_out_as_c_does() -> None:
     found = np.zeros(1, outer)[0]
     found.middle.rows[1].value, found.inner.flag = 2.5, True
     assert found.middle.rows[1].value == 2.5 and found["inner"]["flag"]
+
+
+def test_a_record_within_a_record_is_where_c_has_it() -> None:
+    """NumPy alone would place it without regard to its alignment."""
+    inner = record([("flag", "?"), ("number", "f8")])
+    pair = record([("n", "i4"), ("inner", inner, (2,))])
+    outer = record([("flag", "?"), ("inner", inner), ("pair", pair), ("last", "?")])
+    assert [outer.fields[name][1] for name in outer.names] == [0, 8, 24, 64]
+    assert [pair.fields[name][1] for name in pair.names] == [0, 8]
+    assert (inner.itemsize, pair.itemsize, outer.itemsize) == (16, 40, 72)
+    memory = np.zeros(1, outer)
+    memory[0].pair.inner[1].number = 2.5
+    assert memory["pair"]["inner"]["number"].tolist() == [[0.0, 2.5]]

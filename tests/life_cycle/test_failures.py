@@ -16,6 +16,17 @@ class TestCauses:
         assert island.tick(skipped=1) == silent(Reason.OVERRUN)
         assert island.tick() == silent(Reason.LATCHED, Reason.OVERRUN)
 
+    def test_what_is_known_of_late_ticks(self) -> None:
+        island = Island().engage()
+        overrun = island.life_cycle.overrun
+        found = []
+        for skipped in (0, 1, 1, 1, 1, 1, 1, 0):
+            island.tick(skipped=skipped)
+            found.append((overrun.in_row, overrun.degraded, overrun.over))
+            assert [type(value) for value in found[-1]] == [int, bool, bool]
+        late = [(i, i >= 3, i >= 6) for i in range(7)]
+        assert found == [*late, (0, False, False)]
+
     def test_no_tick_failed_before_the_first(self) -> None:
         assert Island(fault_ticks=1).tick(speed=0.0) == WELL
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from safety_island.life_cycle.overrun import Overrun
+from tests.life_cycle.kernels import Overrun
 from tests.life_cycle.parameters import PARAMETERS
 
 T = 0.125

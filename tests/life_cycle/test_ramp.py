@@ -9,8 +9,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from safety_island.kernel.kernel import JIT
 from safety_island.life_cycle.params import LifeCycleParams
-from safety_island.life_cycle.ramp import Motion, StopRamp
+from safety_island.life_cycle.ramp import Motion
+from tests.life_cycle.kernels import StopRamp
 from tests.life_cycle.parameters import PARAMETERS
 
 STEADY = replace(
@@ -23,6 +25,8 @@ STEADY = replace(
 )
 DT = 0.25
 """With these every number is exact in binary."""
+EXAMPLES = 100 if JIT else 12
+"""A ramp may have ten thousand steps, which takes plain Python a while."""
 
 
 def drive(ramp: StopRamp, dt: float = DT, most: int = 100_000) -> list[Motion]:
@@ -113,7 +117,7 @@ parameters = st.builds(
 lasts = st.builds(Motion, some(-0.7, 0.7), some(-1, 1), some(-30, 30), some(-10, 5))
 
 
-@settings(deadline=None)
+@settings(deadline=None, max_examples=EXAMPLES)
 @given(parameters, lasts, some(-30, 30), st.sampled_from([0.01, 0.03, 0.15]))
 def test_any_ramp_keeps_its_bounds(
     params: LifeCycleParams, last: Motion, speed: float, dt: float
@@ -139,7 +143,7 @@ def test_any_ramp_keeps_its_bounds(
     assert standing * dt == pytest.approx(max(params.stop_hold, dt), abs=1.001 * dt)
 
 
-@settings(deadline=None)
+@settings(deadline=None, max_examples=EXAMPLES)
 @given(parameters, some(0.1, 30.0))
 def test_it_comes_to_rest_in_the_time_that_follows_from_its_limits(
     params: LifeCycleParams, speed: float

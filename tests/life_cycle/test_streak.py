@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from safety_island.life_cycle.streak import Streak
+from tests.life_cycle.kernels import Streak
 
 
 def test_nothing_has_failed_yet() -> None:

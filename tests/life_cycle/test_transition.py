@@ -11,7 +11,8 @@ import pytest
 
 from safety_island.life_cycle.reason import EXPLANATIONS, Reason
 from safety_island.life_cycle.state import State
-from safety_island.life_cycle.transition import Conditions, Life, next_life
+from safety_island.life_cycle.transition import Conditions, Life
+from tests.life_cycle.kernels import next_life
 
 TABLE = """
 state  blocked disengaged barred  arm hold ramp path | next   reason     cause

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Iterator
 from itertools import pairwise
 
@@ -47,6 +48,9 @@ _SYMMETRIC = ("min", "max", "isinstance", "getattr", "cast", "range", "zip")
 
 _KEPT = ("isinstance", "cast", "len", "range", "enumerate", "zip", "super", "getattr", "hasattr")
 """Functions whose argument is of another kind than their result: anything would notice."""
+
+_MEMBER = re.compile(r"int\([A-Z]\w*\.[A-Z][A-Z_0-9]*\)")
+"""The number of an enumeration's member, which equals the member."""
 
 _DELETED = (ast.Expr, ast.Assign, ast.AugAssign, ast.Raise, ast.Continue, ast.Break)
 _EMPTY: dict[str, tuple[bool | int | float | str | None, ...]] = {
@@ -189,7 +193,11 @@ def _call(node: ast.Call) -> Iterator[Change]:
         if other != "max" or name != "sum" or len(arguments) == 1:
             yield told(node, ast.Call(ast.Name(other, ast.Load()), arguments, node.keywords))
     positional = [arg for arg in node.args if not isinstance(arg, ast.Starred)]
-    if len(positional) == len(node.args) and _gives_what_it_gets(node.func):
+    if (
+        len(positional) == len(node.args)
+        and _gives_what_it_gets(node.func)
+        and not _is_number_of_member(node)
+    ):
         for argument in positional:
             yield told(node, argument)
     if name not in _SYMMETRIC and len(positional) == len(node.args):
@@ -203,6 +211,11 @@ def _call(node: ast.Call) -> Iterator[Change]:
                 f"`{one_line(node)}` without `{keyword.arg}`",
                 ast.Call(node.func, node.args, fewer),
             )
+
+
+def _is_number_of_member(node: ast.Call) -> bool:
+    """Whether a call is such as ``int(Reason.NONE)``: the member of an enumeration equals it."""
+    return _MEMBER.fullmatch(ast.unparse(node)) is not None
 
 
 def _gives_what_it_gets(function: ast.expr) -> bool:

@@ -49,6 +49,8 @@ def changes(source: str) -> list[str]:
         ("a.move(b, c)", {"a.move(c, b)"}),
         ("a.move(b, by=c)", {"a.move(b)"}),
         ("a.sent() or b", {"a.sent() and b", "b", "a.sent()", "b or a.sent()"}),
+        ("int(a.b)", {"a.b"}),
+        ("int(Kind.SOME_ONE)", set()),
         ("len(a)", set()),
         ("isinstance(a, b)", set()),
         ("zip(a, b, strict=c)", set()),

@@ -14,6 +14,8 @@ MODULES = (
     "safety_island.command.can_frames",
     "safety_island.command.control_message",
     "safety_island.command.status_message",
+    "safety_island.life_cycle.tick",
+    "safety_island.life_cycle.island_watch",
 )
 
 

@@ -16,35 +16,32 @@ Records = npt.NDArray[Any]
 
 
 def record(columns: list[Any]) -> Any:
-    """Return a C-aligned record type whose fields read as attributes, those of inner records too.
+    """Return a C-aligned record type whose fields read as attributes.
 
-    ``columns``: name and type of each field, and its shape when it is an array.
+    A column is a name, a type and perhaps a shape; the type may be a record type itself, of which
+    NumPy forgets the alignment: places are those of the plain structures.
     """
-    placed: Any = np.dtype(
+    plain: Any = np.dtype(
         [(name, _plain(kind), *shape) for name, kind, *shape in columns], align=True
     )
-    layout: Any = {
-        "names": placed.names,
+    whole: Any = {
+        "names": plain.names,
         "formats": [(kind, *shape) if shape else kind for _, kind, *shape in columns],
-        "offsets": [placed.fields[name][1] for name in placed.names],
-        "itemsize": placed.itemsize,
-        "aligned": True,
+        "offsets": [plain.fields[name][1] for name in plain.names],
+        "itemsize": plain.itemsize,
     }
-    return np.dtype((np.record, np.dtype(layout)))
+    return np.dtype((np.record, np.dtype(whole, align=True)))
 
 
 def _plain(kind: Any) -> Any:
-    """Return the type without attributes: one with them has lost its alignment."""
+    """Return a type without np.record in it, at whatever depth."""
     kind = np.dtype(kind)
-    if kind.subdtype:
-        base, shape = kind.subdtype
-        return np.dtype((_plain(base), shape))
-    if not kind.names:
+    if kind.subdtype is not None:
+        return np.dtype((_plain(kind.subdtype[0]), kind.subdtype[1]))
+    if kind.names is None:
         return kind
-    fields = [kind.fields[name] for name in kind.names]
-    formats, offsets = [_plain(inner) for inner, *_ in fields], [at for _, at, *_ in fields]
-    layout: Any = {"names": kind.names, "formats": formats, "offsets": offsets}
-    return np.dtype(layout | {"itemsize": kind.itemsize, "aligned": True})
+    columns = [(name, _plain(kind.fields[name][0])) for name in kind.names]
+    return np.dtype(columns, align=True)
 
 
 def cells(records: Records) -> dict[str, memoryview[Any]]:

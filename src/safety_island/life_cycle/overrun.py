@@ -1,43 +1,38 @@
 # SPDX-License-Identifier: Apache-2.0
 """Whether the ticks come in time."""
 
-from __future__ import annotations
-
-from collections import deque
-
-from safety_island.life_cycle.params import LifeCycleParams
+from safety_island.kernel.kernel import kernel
 
 
-class Overrun:
-    """Counts late ticks and takes the mean period; told the time [s, monotonic], reads no clock.
+@kernel
+def note_tick(p, o, now, skipped):
+    """Note a tick at ``now`` [s, monotonic], before which ``skipped`` were missed.
 
     ``degraded``: ticks in a row were late, or the mean period is too long; ``over``: that has gone
-    on for too many ticks, and the output must end. ``in_row`` counts late ticks in a row.
+    on for too many ticks, and the output must end.
     """
+    size = p.overrun_window + 1
+    o.times[o.next] = now
+    o.next = o.next + 1 if o.next + 1 < size else 0
+    o.n = min(o.n + 1, size)
+    o.in_row = o.in_row + 1 if skipped > 0 else 0
+    o.degraded = o.in_row >= p.overrun_ticks or is_slow(p, o, now)
+    o.degraded_for = o.degraded_for + 1 if o.degraded else 0
+    o.over = o.degraded_for > p.overrun_ticks
 
-    def __init__(self, params: LifeCycleParams, period_s: float) -> None:
-        self.in_row = 0
-        self.degraded = False
-        self.over = False
-        self._ticks = params.overrun_ticks
-        self._longest_s = period_s / params.overrun_ratio * params.overrun_window
-        self._times: deque[float] = deque(maxlen=params.overrun_window + 1)
-        self._degraded_for = 0
 
-    def tick(self, now: float, skipped: int) -> None:
-        """Note a tick, before which ``skipped`` were missed."""
-        self._times.append(now)
-        self.in_row = self.in_row + 1 if skipped else 0
-        self.degraded = self.in_row >= self._ticks or self._is_slow()
-        self._degraded_for = self._degraded_for + 1 if self.degraded else 0
-        self.over = self._degraded_for > self._ticks
+@kernel
+def is_slow(p, o, now):
+    """Whether the mean period of a whole window is too long."""
+    longest_s = p.period_s / p.overrun_ratio * p.overrun_window
+    return o.n > p.overrun_window and now - o.times[o.next] > longest_s
 
-    def _is_slow(self) -> bool:
-        times = self._times
-        return len(times) == times.maxlen and times[-1] - times[0] > self._longest_s
 
-    def forget(self) -> None:
-        """Begin anew."""
-        self._times.clear()
-        self.in_row = self._degraded_for = 0
-        self.degraded = self.over = False
+@kernel
+def forget_overrun(o):
+    """Begin anew."""
+    o.n = 0
+    o.in_row = 0
+    o.degraded_for = 0
+    o.degraded = False
+    o.over = False

@@ -4,8 +4,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from enum import IntEnum
 
+from safety_island.life_cycle.limits import MAX_OVERRUN_WINDOW
 from safety_island.parameter import parameter
+
+
+class StopSteering(IntEnum):
+    """The steering on the stop ramp: the last angle is held, or led back to the centre."""
+
+    HOLD = 0
+    CENTRE = 1
 
 
 @dataclass(frozen=True)
@@ -60,7 +69,7 @@ class LifeCycleParams:
         "ticks",
         "Ticks over which the mean period is taken.",
         2,
-        1000,
+        MAX_OVERRUN_WINDOW,
         key="life_cycle.overrun_window",
     )
     overrun_ratio: float = parameter(
@@ -98,7 +107,7 @@ class LifeCycleParams:
         "",
         "CAN_ONLY: the steering on the stop ramp.",
         key="life_cycle.stop.steering",
-        choices=("hold", "centre"),
+        choices=tuple(item.name.lower() for item in StopSteering),
     )
     stop_steering_rate: float = parameter(
         "rad/s",

@@ -1,11 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The declared stop of CAN_ONLY: brake with a bounded jerk, hold at standstill, then silence."""
+"""What CAN_ONLY sends in place of the controllers' commands: the last one again, then a ramp.
 
-from __future__ import annotations
+The ramp is the declared stop: brake with a bounded jerk, hold at standstill, then silence. It leads
+the last command to a standstill, tick by tick, and needs no measurement: the speed follows from the
+commanded acceleration, in the direction in which the vehicle went.
+"""
 
 from typing import NamedTuple
 
-from safety_island.life_cycle.params import LifeCycleParams
+from safety_island.kernel.kernel import kernel
+from safety_island.life_cycle.params import StopSteering
+from safety_island.life_cycle.state import State
+
+HOLD = int(State.HOLD)
+STOP = int(State.STOP)
+HOLD_ANGLE = int(StopSteering.HOLD)
 
 
 class Motion(NamedTuple):
@@ -17,42 +26,90 @@ class Motion(NamedTuple):
     acceleration: float
 
 
-class StopRamp:
-    """Leads the last command to a standstill, tick by tick; it needs no measurement.
+@kernel
+def is_stopping(state):
+    """Whether commands are sent in place of the controllers'."""
+    return state in (HOLD, STOP)
 
-    The speed follows from the commanded acceleration, in the direction in which the vehicle went.
-    ``is_over`` when the stopped vehicle was held for the time of the parameters.
+
+@kernel
+def hold_over(p, stop):
+    """Whether the last command was repeated often enough."""
+    return stop.holds >= p.hold_ticks
+
+
+@kernel
+def enter(stop, state, speed):
+    """Take the state of this tick, and the speed [m/s] that was measured last."""
+    if state == STOP and not stop.ramp.has_begun:
+        begin_ramp(stop.ramp, stop.last_sent, speed)
+    elif not is_stopping(state):
+        stop.holds = 0
+        stop.ramp.has_begun = False
+        stop.ramp.is_over = False
+
+
+@kernel
+def next_motion(p, stop, state, step_s, motion):
+    """Set ``motion`` to the command ``step_s`` [s] after the last; False: the state has none."""
+    if state == HOLD:
+        periods = int(step_s / p.period_s + 0.5)
+        stop.holds += max(periods, 1)  # ticks that were missed, too
+        copy_motion(motion, stop.last_sent)
+        motion.rate = 0.0
+        return True
+    if not stop.ramp.has_begun:
+        return False
+    step_ramp(p, stop.ramp, step_s, motion)
+    return True
+
+
+@kernel
+def copy_motion(to, source):
+    """Copy a MOTION."""
+    to.angle = source.angle
+    to.rate = source.rate
+    to.velocity = source.velocity
+    to.acceleration = source.acceleration
+
+
+@kernel
+def begin_ramp(r, last, speed):
+    """Begin at the last command (MOTION) and the last measured speed [m/s]."""
+    r.has_begun = True
+    r.is_over = False
+    r.gear = -1.0 if speed < 0.0 or (speed == 0.0 and last.velocity < 0.0) else 1.0
+    r.speed = abs(speed)
+    r.acceleration = min(last.acceleration, 0.0)
+    r.angle = last.angle
+    r.held_s = 0.0
+
+
+@kernel
+def step_ramp(p, r, dt, motion):
+    """Set ``motion`` to the command ``dt`` [s] later.
+
+    The ramp is over when the stopped vehicle was held for the time of the parameters.
     """
+    jerk_step = p.stop_jerk * dt
+    change = -p.stop_deceleration - r.acceleration
+    r.acceleration += min(jerk_step, max(-jerk_step, change))
+    if r.speed == 0.0:
+        r.held_s += dt
+        r.is_over = r.held_s >= p.stop_hold
+    r.speed = max(0.0, r.speed + r.acceleration * dt)
+    motion.rate = steer(p, r, dt)
+    motion.angle = r.angle
+    motion.velocity = r.gear * r.speed
+    motion.acceleration = r.acceleration
 
-    def __init__(self, params: LifeCycleParams, last: Motion, speed: float) -> None:
-        """``speed``: the last measured speed [m/s], which the ramp starts from."""
-        self.is_over = False
-        self._params = params
-        self._gear = -1.0 if speed < 0.0 or (speed == 0.0 and last.velocity < 0.0) else 1.0
-        self._speed = abs(speed)
-        self._acceleration = min(last.acceleration, 0.0)
-        self._angle = last.angle
-        self._held_s = 0.0
 
-    def step(self, dt: float) -> Motion:
-        """Return the command ``dt`` [s] later."""
-        params = self._params
-        target = -params.stop_deceleration
-        step = params.stop_jerk * dt
-        change = min(step, max(-step, target - self._acceleration))
-        self._acceleration += change
-        if self._speed == 0.0:
-            self._held_s += dt
-            self.is_over = self._held_s >= params.stop_hold
-        self._speed = max(0.0, self._speed + self._acceleration * dt)
-        rate = self._steer(dt)
-        return Motion(self._angle, rate, self._gear * self._speed, self._acceleration)
-
-    def _steer(self, dt: float) -> float:
-        """Hold the angle or lead it to the centre; return the rate [rad/s]."""
-        if self._params.stop_steering == "hold":
-            return 0.0
-        most = self._params.stop_steering_rate * dt
-        change = min(most, max(-most, -self._angle))
-        self._angle += change
-        return change / dt
+@kernel
+def steer(p, r, dt):
+    """Hold the angle or lead it to the centre; return the rate [rad/s]."""
+    if p.stop_steering == HOLD_ANGLE:
+        return 0.0
+    most = p.stop_steering_rate * dt
+    change = min(most, max(-most, -r.angle))
+    r.angle += change
+    return change / dt

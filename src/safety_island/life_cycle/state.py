@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from enum import IntEnum
+from enum import IntEnum, IntFlag
 
 
 class State(IntEnum):
@@ -21,3 +21,14 @@ class State(IntEnum):
     """CAN_ONLY: the declared stop ramp is sent."""
     SILENT = 5
     """Nothing is sent, until the island is armed again."""
+
+
+class LifeFlag(IntFlag):
+    """What else follows from the state of the life cycle: the bits that ``life_flags`` returns."""
+
+    CONTROLS = 1
+    """The controllers may count on being followed."""
+    ARMED = 2
+    """The vehicle is under control, or may be again without being engaged anew."""
+    MUST_STOP = 4
+    """Commands may not just end: the vehicle must be stopped first."""

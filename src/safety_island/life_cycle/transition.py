@@ -1,12 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
 """The life cycle as one pure function: from state and conditions to the next state."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
+from safety_island.kernel.kernel import kernel
 from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State
+
+INIT = int(State.INIT)
+READY = int(State.READY)
+ACTIVE = int(State.ACTIVE)
+HOLD = int(State.HOLD)
+STOP = int(State.STOP)
+SILENT = int(State.SILENT)
+NONE = int(Reason.NONE)
+NOT_AUTONOMOUS = int(Reason.NOT_AUTONOMOUS)
+LATCHED = int(Reason.LATCHED)
 
 
 class Conditions(NamedTuple):
@@ -42,74 +51,85 @@ class Life(NamedTuple):
     cause: Reason = Reason.NONE
 
 
-_WELL = Life(State.ACTIVE, Reason.NONE)
-
-
-def next_life(life: Life, now: Conditions) -> Life:
-    """Return the next state; every pair is in ``tests/life_cycle/test_transition.py``."""
+@kernel
+def next_life(life, now):
+    """Return the next Life; every pair is in ``tests/life_cycle/test_transition.py``."""
     state, _, cause = life
-    if state is State.SILENT:
-        return _silent(cause, now)
-    if now.disengaged is Reason.NOT_AUTONOMOUS:  # an act of an operator; a mode unknown is none
-        return _unarmed(now)
-    if state in (State.HOLD, State.STOP):
-        return _stop(state, cause, now)
-    return _armed(now) if state is State.ACTIVE or cause else _unarmed(now)
+    if state == SILENT:
+        return from_silent(cause, now)
+    if now.disengaged == NOT_AUTONOMOUS:  # an operator's act; an unknown mode is none
+        return unarmed(now)
+    if state in (HOLD, STOP):
+        return from_stop(state, cause, now)
+    return from_armed(now) if state == ACTIVE or cause != NONE else unarmed(now)
 
 
-def _unarmed(now: Conditions) -> Life:
+@kernel
+def unarmed(now):
     """From INIT and READY, and from any state that an operator leaves by disengaging."""
-    if now.blocked:
-        return Life(State.INIT, now.blocked)
-    if now.disengaged:
-        return Life(State.READY, now.disengaged)
-    if now.barred and not now.arm:
-        return Life(State.SILENT, now.barred, now.barred)
-    return _WELL
+    if now.blocked != NONE:
+        return Life(INIT, now.blocked, NONE)
+    if now.disengaged != NONE:
+        return Life(READY, now.disengaged, NONE)
+    if now.barred != NONE and not now.arm:
+        return Life(SILENT, now.barred, now.barred)
+    return Life(ACTIVE, NONE, NONE)
 
 
-def _armed(now: Conditions) -> Life:
-    """Out of ACTIVE: silence, since a gate brakes; without one, hold and then stop.
+@kernel
+def from_armed(now):
+    """Out of ACTIVE: silence, at which Autoware brakes; without Autoware, hold and then stop.
 
-    While just the mode is unknown, the gate is told as before, and need not brake for it. A vehicle
-    that stands and lacks only a trajectory that it could follow may drive on when one comes.
+    Its gate alone does not brake when commands end: ``topic_state_monitor`` times out, and
+    ``mrm_handler`` then has the vehicle stopped. While just the mode is unknown, commands go on,
+    so that these need not act. A vehicle that stands and lacks only a trajectory that it could
+    follow may drive on when one comes.
     """
-    lost = now.blocked or now.disengaged
-    if not lost:
-        return _WELL
+    lost = lost_by(now)
+    if lost == NONE:
+        return Life(ACTIVE, NONE, NONE)
     if now.has_ramp:
-        return Life(State.STOP if now.hold_over else State.HOLD, lost, lost)
-    if now.blocked and _may_wait(now):
-        return _unarmed(now)
-    return Life(State.SILENT if now.blocked else State.READY, lost, lost)
+        return Life(STOP if now.hold_over else HOLD, lost, lost)
+    if now.blocked != NONE and may_wait(now):
+        return unarmed(now)
+    return Life(SILENT if now.blocked != NONE else READY, lost, lost)
 
 
-def _may_wait(now: Conditions) -> bool:
+@kernel
+def lost_by(now):
+    """Reason why an armed island does not drive; NONE when it may."""
+    return now.blocked if now.blocked != NONE else now.disengaged
+
+
+@kernel
+def may_wait(now):
     """Whether what was lost needs no operator: the vehicle stands, and lacks but a trajectory."""
-    return now.only_path and not now.disengaged
+    return now.only_path and now.disengaged == NONE
 
 
-def _stop(state: State, cause: Reason, now: Conditions) -> Life:
+@kernel
+def from_stop(state, cause, now):
     """From HOLD back when the cause has gone; a stop that has begun is carried through."""
-    lost = now.blocked or now.disengaged
-    if state is State.HOLD and not lost:
-        return _WELL
-    if state is State.STOP and now.ramp_over:
-        return (
-            _unarmed(now) if _may_wait(now) else Life(State.SILENT, lost or Reason.LATCHED, cause)
-        )
-    is_stop = state is State.STOP or now.hold_over
-    return Life(State.STOP if is_stop else State.HOLD, lost or cause, cause)
+    lost = lost_by(now)
+    if state == HOLD and lost == NONE:
+        return Life(ACTIVE, NONE, NONE)
+    if state == STOP and now.ramp_over:
+        if may_wait(now):
+            return unarmed(now)
+        return Life(SILENT, lost if lost != NONE else LATCHED, cause)
+    is_stop = state == STOP or now.hold_over
+    return Life(STOP if is_stop else HOLD, lost if lost != NONE else cause, cause)
 
 
-def _silent(cause: Reason, now: Conditions) -> Life:
+@kernel
+def from_silent(cause, now):
     """Latched: out of it only by an explicit act, and never while a cause stands."""
-    if now.blocked:
-        return Life(State.SILENT, now.blocked, cause)
-    if now.disengaged is Reason.NOT_AUTONOMOUS:
-        return Life(State.READY, now.disengaged)
-    if now.disengaged:  # nobody has left autonomous mode: its publisher went
-        return Life(State.SILENT, now.disengaged, cause)
+    if now.blocked != NONE:
+        return Life(SILENT, now.blocked, cause)
+    if now.disengaged == NOT_AUTONOMOUS:
+        return Life(READY, now.disengaged, NONE)
+    if now.disengaged != NONE:  # nobody has left autonomous mode: its publisher went
+        return Life(SILENT, now.disengaged, cause)
     if now.arm:
-        return _WELL
-    return Life(State.SILENT, Reason.LATCHED if cause is not now.barred else cause, cause)
+        return Life(ACTIVE, NONE, NONE)
+    return Life(SILENT, cause if cause == now.barred else LATCHED, cause)

@@ -74,10 +74,13 @@ class ControllerNode(Node):
             transport, follower, self.clock, self.logger, parameters.gate, release
         )
         self._offset = self._steering_offset()
-        self.identity = Identity(transport, self.inputs, self.logger, parameters, joined_at)
         self._period_s = period_s = parameters.node.ctrl_period
         timeout_s = parameters.node.timeout_thr_sec
         self.life_cycle = LifeCycle(parameters.life_cycle, period_s, not mode.uses_dds)
+        islands = self.life_cycle.memory["islands"]
+        self.identity = Identity(
+            transport, self.inputs, self.logger, parameters, joined_at, islands
+        )
         guard = Guard(parameters.guard, parameters.vehicle.wheel_base, timeout_s)
         self.check = CommandCheck(guard, timeout_s, self.logger)
         self.arming = Arming(self.subscription(topics.ARM), self.logger)

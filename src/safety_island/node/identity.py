@@ -8,14 +8,13 @@ from collections.abc import Sequence
 
 from safety_island.dds import topics
 from safety_island.gate.writers import WINDOW_S, Writers
-from safety_island.life_cycle.island_watch import IslandWatch
+from safety_island.kernel.records import Records
+from safety_island.life_cycle.life_cycle import IslandWatch
 from safety_island.life_cycle.reason import Reason
 from safety_island.node.input_set import InputSet
 from safety_island.node.transport import Transport
 from safety_island.params import IslandParameters
 from safety_island.platform.interfaces import Logger
-
-_NONE = Reason.NONE
 
 
 class Identity:
@@ -28,11 +27,15 @@ class Identity:
         logger: Logger,
         parameters: IslandParameters,
         joined_at: float,
+        islands: Records,
     ) -> None:
-        """``joined_at`` [s, monotonic]: when the transport entered its domain."""
+        """``joined_at`` [s, monotonic]: when the transport entered its domain.
+
+        ``islands``: the memory of other islands (ISLANDS of shape (1,)).
+        """
         self.own: set[bytes] = set()
         discovery_s = parameters.life_cycle.discovery_time if transport.needs_discovery else 0.0
-        self.islands = IslandWatch(joined_at, discovery_s)
+        self.islands = IslandWatch(joined_at, discovery_s, islands)
         self._transport, self._inputs, self._logger = transport, inputs, logger
         self._keeps_first = parameters.gate.second_publisher == "keep_first"
         self._others = Writers(parameters.gate.writer_changes)
@@ -67,13 +70,4 @@ class Identity:
 
     def blocked(self, now: float) -> Reason:
         """Why nothing may be sent because of other islands, NONE when it may."""
-        islands = self.islands
-        if islands.is_newcomer:
-            return Reason.SECOND_ISLAND
-        if islands.looks_around(now):
-            return Reason.DISCOVERING
-        if now <= self._flaps_until:
-            return Reason.WRITER_FLAPPING
-        if islands.others and not self._keeps_first:
-            return Reason.SECOND_PUBLISHER
-        return _NONE
+        return self.islands.blocked(now <= self._flaps_until, self._keeps_first, now)

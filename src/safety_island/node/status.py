@@ -81,7 +81,7 @@ class StatusTopic(TopicWriter):
         check, overrun, arming = node.check, node.life_cycle.overrun, node.arming
         inputs, mode = node.inputs, node.inputs.operation_mode
         tick["wall_ns"][0] = node.clock.wall_ns()
-        tick["other_islands"][0] = len(node.identity.islands.others)
+        tick["other_islands"][0] = node.identity.islands.count
         tick["have_controllers_run"][0] = node.controllers.have_run
         fields["arm_nonce"][0] = arming.nonce
         fields["arm_result"][0] = arming.result

@@ -25,7 +25,7 @@ _SCALARS: dict[Any, str] = {float: "double", int: "int64_t"}
 _TOP = """\
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Kernels of the safety island, generated from their record types.
+ * Kernels of the safety island, generated from the record types of its rooms.
  * One tick: safety_island_lateral_step, safety_island_longitudinal_step, and
  * safety_island_guard_command for what is to be sent. Every function returns a status, keeps all
  * its memory in the records that it is given, and calls nothing but memset
