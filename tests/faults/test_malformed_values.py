@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from safety_island.control.records import POINT, Records
-from safety_island.gate.reason import SampleReason
+from safety_island.input_gate.reason import SampleReason
 from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State
 from safety_island.messages.inputs import decode_odometry

@@ -37,7 +37,7 @@ WARM = ("safety_island.control.follower", "safety_island.params", "tests.conftes
 """Slow to import; what they import of the rooms below is forgotten again."""
 
 ABOVE = (
-    *("gate", "life_cycle", "guard", "can", "params", "bridge", "node"),
+    *("input_gate", "life_cycle", "guard", "can", "params", "bridge", "node"),
     *("sim", "replay", "cli", "bench"),
 )
 """Rooms that are mutated or import one that is; a fork imports them anew."""
@@ -80,7 +80,7 @@ PAGE = "tests/params/test_document.py"
 """The page of the parameters, which holds the units and ranges of a room's own."""
 
 ROOMS = (
-    Room("gate", ("gate",), ("tests/gate", PAGE)),
+    Room("input_gate", ("input_gate",), ("tests/input_gate", PAGE)),
     Room("life_cycle", ("life_cycle",), ("tests/life_cycle", PAGE)),
     Room("guard", ("guard",), ("tests/guard", PAGE)),
     Room("can/encoder.py", ("can/encoder.py",), ("tests/can/test_encoder.py",)),

@@ -11,9 +11,9 @@ import pytest
 
 from safety_island.control.status import ControllerLimit, LongitudinalState, Mode, MpcStatus
 from safety_island.dds import topics
-from safety_island.gate.reason import SampleReason
-from safety_island.gate.warning import InputWarning
 from safety_island.guard import Verdict
+from safety_island.input_gate.reason import SampleReason
+from safety_island.input_gate.warning import InputWarning
 from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State
 from safety_island.messages.status import NO_VALUE, decode_status

@@ -8,7 +8,7 @@ from operator import attrgetter
 from typing import TYPE_CHECKING
 
 from safety_island.dds import topics
-from safety_island.gate.writers import MOST_OTHERS
+from safety_island.input_gate.writers import MOST_OTHERS
 from safety_island.life_cycle.state import State
 from safety_island.messages.status import encode_values
 from safety_island.messages.wire import NANOSECONDS

@@ -16,8 +16,8 @@ from safety_island.control.params import (
     VehicleParams,
     key_of,
 )
-from safety_island.gate.params import GateParams
 from safety_island.guard.params import GuardParams
+from safety_island.input_gate.params import GateParams
 from safety_island.life_cycle.params import LifeCycleParams
 
 

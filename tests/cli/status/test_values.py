@@ -10,7 +10,7 @@ from hypothesis import given, settings
 
 from safety_island.cli.status.names import guard_limits_of
 from safety_island.cli.status.values import status_values
-from safety_island.gate.reason import SampleReason
+from safety_island.input_gate.reason import SampleReason
 from safety_island.messages import codec
 from safety_island.messages.status import STATUS, decode_status
 from tests.cli.status.samples import NOT_FINITE, ODOMETRY, STALE, sample

@@ -7,7 +7,7 @@ import math
 
 from safety_island.cli.status.names import flags_of, input_name
 from safety_island.cli.status.reasons import explained_refusal
-from safety_island.gate.warning import InputWarning
+from safety_island.input_gate.warning import InputWarning
 from safety_island.life_cycle.reason import Reason
 from safety_island.messages.status_fields import InputStatus, Status
 

@@ -11,8 +11,8 @@ from rich.text import Text
 from safety_island.cli.status import text
 from safety_island.cli.status.names import flags_of, input_name, name_of
 from safety_island.cli.status.why import is_free, why
-from safety_island.gate.reason import SampleReason
-from safety_island.gate.warning import InputWarning
+from safety_island.input_gate.reason import SampleReason
+from safety_island.input_gate.warning import InputWarning
 from safety_island.life_cycle.state import State
 from safety_island.messages.status_fields import InputStatus, Status
 

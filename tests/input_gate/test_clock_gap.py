@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import pytest
 
-from safety_island.gate.clock_gap import clock_gap_s
+from safety_island.input_gate.clock_gap import clock_gap_s
 
 NOW_NS = 1_700_000_000_000_000_000
 

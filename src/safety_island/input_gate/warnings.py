@@ -3,11 +3,11 @@
 
 from __future__ import annotations
 
-from safety_island.gate.latched import LatchedGate
-from safety_island.gate.rate import RateMeter
-from safety_island.gate.stamps import StampGate
-from safety_island.gate.warning import InputWarning
-from safety_island.gate.writers import Writers
+from safety_island.input_gate.latched import LatchedGate
+from safety_island.input_gate.rate import RateMeter
+from safety_island.input_gate.stamps import StampGate
+from safety_island.input_gate.warning import InputWarning
+from safety_island.input_gate.writers import Writers
 
 _AGE, _RATE, _CLOCK = int(InputWarning.AGE), int(InputWarning.RATE), int(InputWarning.CLOCK)
 _DELAY, _SECOND = int(InputWarning.DELAY), int(InputWarning.SECOND_PUBLISHER)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import pytest
 
-from safety_island.gate.rate import LOWEST_SHARE, WINDOW, RateMeter
+from safety_island.input_gate.rate import LOWEST_SHARE, WINDOW, RateMeter
 
 T = 0.125
 

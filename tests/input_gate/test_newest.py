@@ -10,7 +10,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from safety_island.gate.newest import NO_STAMP, TRIES, in_order, newest_first, overtaken, read_stamp
+from safety_island.input_gate.newest import (
+    NO_STAMP,
+    TRIES,
+    in_order,
+    newest_first,
+    overtaken,
+    read_stamp,
+)
 
 
 class Message(NamedTuple):

@@ -7,8 +7,8 @@ from dataclasses import fields
 
 import pytest
 
-from safety_island.gate.params import GateParams
-from safety_island.gate.reason import EXPLANATIONS, UNUSABLE, SampleReason
+from safety_island.input_gate.params import GateParams
+from safety_island.input_gate.reason import EXPLANATIONS, UNUSABLE, SampleReason
 
 VERBS = (
     *("find", "fix", "let", "look", "mend", "normalise", "nothing", "publish", "report"),

@@ -8,14 +8,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from safety_island.gate.content import ContentGate
-from safety_island.gate.reason import SampleReason
-from safety_island.gate.stamps import StampGate
+from safety_island.input_gate.content import ContentGate
+from safety_island.input_gate.reason import SampleReason
+from safety_island.input_gate.stamps import StampGate
 from safety_island.messages.inputs import Acceleration, Odometry
 from safety_island.messages.points import POINT
 from safety_island.messages.trajectory import Trajectory
 from safety_island.messages.wire import Time
-from tests.gate.parameters import PARAMETERS
+from tests.input_gate.parameters import PARAMETERS
 
 GATE = ContentGate(PARAMETERS)
 STAMPS = StampGate(0.5)

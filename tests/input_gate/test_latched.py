@@ -10,11 +10,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from safety_island.gate.latched import OVERTAKEN_S, REMEMBERED, WRITERS, LatchedGate
-from safety_island.gate.reason import SampleReason
-from safety_island.gate.sender_clock import SenderClock
+from safety_island.input_gate.latched import OVERTAKEN_S, REMEMBERED, WRITERS, LatchedGate
+from safety_island.input_gate.reason import SampleReason
+from safety_island.input_gate.sender_clock import SenderClock
 from safety_island.messages.wire import CDR_LE, Time
-from tests.gate.test_sender_clock import Input
+from tests.input_gate.test_sender_clock import Input
 
 DUPLICATE, OLDER = SampleReason.DUPLICATE, SampleReason.OLDER
 A, B = b"a" * 16, b"b" * 16

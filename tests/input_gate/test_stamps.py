@@ -7,10 +7,10 @@ import math
 
 import pytest
 
-from safety_island.gate.clock_search import SEARCH_SHARE
-from safety_island.gate.reason import SampleReason
-from safety_island.gate.sender_clock import SenderClock
-from safety_island.gate.stamps import (
+from safety_island.input_gate.clock_search import SEARCH_SHARE
+from safety_island.input_gate.reason import SampleReason
+from safety_island.input_gate.sender_clock import SenderClock
+from safety_island.input_gate.stamps import (
     BEGIN_ANEW_S,
     FORGET_RATE,
     STEP_TOLD_S,

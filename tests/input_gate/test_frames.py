@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from safety_island.gate.frames import ANY_FRAME, frames
+from safety_island.input_gate.frames import ANY_FRAME, frames
 
 
 def test_with_and_without_a_slash() -> None:

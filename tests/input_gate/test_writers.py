@@ -6,7 +6,7 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from safety_island.gate.writers import MOST_OTHERS, UNKNOWN, WINDOW_S, Writers
+from safety_island.input_gate.writers import MOST_OTHERS, UNKNOWN, WINDOW_S, Writers
 
 A, B, C = b"a" * 16, b"b" * 16, b"c" * 16
 NOBODY: frozenset[bytes] = frozenset()

@@ -7,7 +7,7 @@ import math
 
 import pytest
 
-from safety_island.gate.clock_search import SEARCH_SHARE, ClockSearch
+from safety_island.input_gate.clock_search import SEARCH_SHARE, ClockSearch
 
 NEVER = -math.inf
 """When a stamp that fits came: not at all."""

@@ -8,8 +8,8 @@ from itertools import pairwise
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from safety_island.gate.reason import SampleReason
-from safety_island.gate.stamps import StampGate
+from safety_island.input_gate.reason import SampleReason
+from safety_island.input_gate.stamps import StampGate
 from safety_island.messages.wire import Time
 
 LIMIT_S = 0.5

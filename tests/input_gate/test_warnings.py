@@ -5,11 +5,11 @@ from __future__ import annotations
 
 import pytest
 
-from safety_island.gate.rate import RateMeter
-from safety_island.gate.stamps import StampGate
-from safety_island.gate.warning import EXPLANATIONS, InputWarning
-from safety_island.gate.warnings import warnings
-from safety_island.gate.writers import Writers
+from safety_island.input_gate.rate import RateMeter
+from safety_island.input_gate.stamps import StampGate
+from safety_island.input_gate.warning import EXPLANATIONS, InputWarning
+from safety_island.input_gate.warnings import warnings
+from safety_island.input_gate.writers import Writers
 
 A, B = b"a" * 16, b"b" * 16
 

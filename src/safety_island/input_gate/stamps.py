@@ -11,9 +11,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from safety_island.gate.clock_search import ClockSearch
-from safety_island.gate.reason import SampleReason
-from safety_island.gate.sender_clock import SenderClock
+from safety_island.input_gate.clock_search import ClockSearch
+from safety_island.input_gate.reason import SampleReason
+from safety_island.input_gate.sender_clock import SenderClock
 from safety_island.messages.wire import NANOSECONDS, Time
 
 BEGIN_ANEW_S = 10.0

@@ -7,7 +7,7 @@ import math
 
 import pytest
 
-from safety_island.gate.sender_clock import (
+from safety_island.input_gate.sender_clock import (
     AGREE_S,
     LARGEST_RATE_ERROR,
     WINDOW_S,

@@ -3,10 +3,10 @@
 
 from __future__ import annotations
 
-from safety_island.gate.frames import frames
-from safety_island.gate.params import GateParams
-from safety_island.gate.reason import SampleReason
-from safety_island.gate.stamps import StampGate
+from safety_island.input_gate.frames import frames
+from safety_island.input_gate.params import GateParams
+from safety_island.input_gate.reason import SampleReason
+from safety_island.input_gate.stamps import StampGate
 from safety_island.messages.inputs import Acceleration, Odometry
 from safety_island.messages.trajectory import Trajectory
 

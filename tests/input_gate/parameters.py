@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from safety_island.gate.params import GateParams
+from safety_island.input_gate.params import GateParams
 
 PARAMETERS = GateParams(
     trajectory_age_limit=0.9,
