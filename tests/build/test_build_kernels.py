@@ -18,8 +18,9 @@ from safety_island.build.errors import BuildError
 from safety_island.build.kernel_compile import compile_into, kernel_irs
 from safety_island.build.kernel_objects import kernel_objects
 from safety_island.build.machines import CORTEX_R52, X86_64, host
-from safety_island.control.records import POINT, record
+from safety_island.control.records import POINT
 from safety_island.kernel import kernel
+from safety_island.kernel.records import record
 
 pytestmark = pytest.mark.timeout(600)  # the first of a session compiles the kernels
 

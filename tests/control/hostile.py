@@ -10,8 +10,9 @@ import numpy as np
 
 from safety_island.control.follower import TrajectoryFollower
 from safety_island.control.limits import MAX_POINTS
-from safety_island.control.records import POINT, Records
+from safety_island.control.records import POINT
 from safety_island.control.status import Refusal
+from safety_island.kernel.records import Records
 from tests.control.lateral_rig import make_points
 
 Offer = Callable[[TrajectoryFollower], Refusal]

@@ -11,9 +11,10 @@ import numpy as np
 import numpy.typing as npt
 
 from safety_island.control.follower import TrajectoryFollower
-from safety_island.control.records import POINT, Records
+from safety_island.control.records import POINT
 from safety_island.control.reference_positions import ensure
 from safety_island.control.status import Mode, MpcStatus, Refusal
+from safety_island.kernel.records import Records
 from tests.golden.harness import firmware
 
 PERIOD = 0.15

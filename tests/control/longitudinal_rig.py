@@ -14,15 +14,9 @@ from safety_island.control.longitudinal_state import (
     new_longitudinal_work,
     reset_longitudinal_trace,
 )
-from safety_island.control.records import (
-    COMMAND,
-    INPUTS,
-    TRACE,
-    Records,
-    new_points,
-    pack_parameters,
-)
+from safety_island.control.records import COMMAND, INPUTS, TRACE, new_points, pack_parameters
 from safety_island.control.status import LongitudinalState
+from safety_island.kernel.records import Records
 from tests.golden.harness import firmware
 
 PERIOD = 0.15

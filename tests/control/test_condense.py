@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from safety_island.control.condense import is_finite_problem
-from safety_island.control.records import Records
 from safety_island.control.status import MpcStatus
+from safety_island.kernel.records import Records
 from tests.control import dense_mpc
 from tests.control.lateral_rig import Rig, Values, make_points, on_path
 from tests.control.vehicles import FRONT_HEAVY

@@ -11,8 +11,8 @@ import pytest
 
 from safety_island.control.filters import butterworth
 from safety_island.control.lateral_state import FILTER
-from safety_island.control.records import record
 from safety_island.control.reference_smoothing import moving_average
+from safety_island.kernel.records import record
 from tests.control.lateral_rig import Values, line, on_path
 
 MEMORY = record(FILTER)

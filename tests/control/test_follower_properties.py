@@ -18,8 +18,9 @@ from safety_island.control.input_check import (
     MAX_SPEED,
     MAX_TURN,
 )
-from safety_island.control.records import POINT, Records
+from safety_island.control.records import POINT
 from safety_island.control.status import Refusal
+from safety_island.kernel.records import Records
 from tests.control.follower_rig import finite
 from tests.control.lateral_rig import START
 from tests.control.vehicles import DYNAMICS

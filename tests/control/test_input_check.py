@@ -15,8 +15,9 @@ from safety_island.control.input_check import (
     MAX_SPEED,
     MAX_TURN,
 )
-from safety_island.control.records import POINT, Records
+from safety_island.control.records import POINT
 from safety_island.control.status import Refusal
+from safety_island.kernel.records import Records
 from tests.control.lateral_rig import make_points
 from tests.golden.harness import firmware
 

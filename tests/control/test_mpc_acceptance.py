@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from safety_island.control.records import Records
 from safety_island.control.status import MpcStatus
+from safety_island.kernel.records import Records
 from tests.control.lateral_rig import Rig, make_points, on_path
 from tests.control.vehicles import MODELS
 

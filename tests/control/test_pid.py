@@ -10,7 +10,7 @@ import pytest
 
 from safety_island.control.longitudinal_state import PID_MEMORY
 from safety_island.control.pid import low_pass, pid_reset, pid_step
-from safety_island.control.records import Records
+from safety_island.kernel.records import Records
 from tests.control.longitudinal_rig import packed
 
 

@@ -14,7 +14,8 @@ from safety_island.control.point_list import (
     interpolate_at,
     interpolate_pose,
 )
-from safety_island.control.records import POINT, Records
+from safety_island.control.records import POINT
+from safety_island.kernel.records import Records
 
 
 def points(xy: list[tuple[float, float]], yaw: list[float] | None = None) -> Records:

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from safety_island.control.points import nearest_index, offset_along, segment_of
-from safety_island.control.records import POINT, Records
+from safety_island.control.records import POINT
+from safety_island.kernel.records import Records
 
 FAR = 1e6
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from safety_island.control.records import Records
+from safety_island.kernel.records import Records
 from tests.control.lateral_rig import Rig, Values, circle, line, make_points, on_path
 
 EPSILON = np.finfo(float).eps

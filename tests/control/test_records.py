@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from safety_island.control.lateral_state import LATERAL_STATE
-from safety_island.control.records import INPUTS, TRACE, cells
+from safety_island.control.records import INPUTS, TRACE
+from safety_island.kernel.records import cells
 
 NUMBERS = {"f": 1.5, "i": -3, "u": 3, "b": True}
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from safety_island.control.limits import EXTENSION_POINTS, MAX_REFERENCE
-from safety_island.control.records import Records
 from safety_island.control.status import MpcStatus
+from safety_island.kernel.records import Records
 from tests.control.lateral_rig import (
     Values,
     arc_of,

@@ -11,8 +11,8 @@ import pytest
 
 from safety_island.control.follower import TrajectoryFollower
 from safety_island.control.limits import EXTENSION_POINTS, MAX_POINTS, MAX_REFERENCE
-from safety_island.control.records import Records
 from safety_island.control.status import Refusal
+from safety_island.kernel.records import Records
 from tests.control.lateral_rig import line, make_points
 from tests.golden.harness import firmware
 

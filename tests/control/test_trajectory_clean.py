@@ -12,8 +12,9 @@ import pytest
 
 from safety_island.control.follower import TrajectoryFollower
 from safety_island.control.limits import MAX_POINTS
-from safety_island.control.records import POINT, Records
+from safety_island.control.records import POINT
 from safety_island.control.status import LongitudinalState, MpcStatus, Refusal
+from safety_island.kernel.records import Records
 from safety_island.params import load_set
 from tests.control.follower_rig import memory
 from tests.control.lateral_rig import make_points

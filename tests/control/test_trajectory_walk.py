@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from safety_island.control.point_list import interpolate_pose
-from safety_island.control.records import POINT, Records
+from safety_island.control.records import POINT
 from safety_island.control.trajectory_walk import pitch_ahead, pose_ahead, stop_distance, stop_index
+from safety_island.kernel.records import Records
 
 
 def line(x: list[float], v: list[float], z: list[float] | None = None) -> Records:

@@ -6,7 +6,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from safety_island.control.records import POINT, Records
+from safety_island.control.records import POINT
+from safety_island.kernel.records import Records
 from safety_island.messages import inputs
 from safety_island.messages.trajectory import decode_trajectory, encode_trajectory
 

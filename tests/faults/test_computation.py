@@ -12,8 +12,8 @@ import pytest
 from safety_island.control.lateral import lateral_finish, lateral_prepare
 from safety_island.control.qp import MAX_ITERATIONS
 from safety_island.control.qp_alone import check_problem, solve_problem
-from safety_island.control.records import Records
 from safety_island.control.status import MpcStatus
+from safety_island.kernel.records import Records
 from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State
 from tests.faults.checks import BOTH, recovers, silent_within, stays_active

@@ -14,10 +14,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from safety_island.control.records import POINT, Records
+from safety_island.control.records import POINT
 from safety_island.control.status import LongitudinalState
 from safety_island.input_gate.reason import SampleReason
 from safety_island.input_gate.warning import InputWarning
+from safety_island.kernel.records import Records
 from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State
 from tests.faults import edit, wire

@@ -17,16 +17,10 @@ import pytest
 
 from safety_island.control.follower import TrajectoryFollower
 from safety_island.control.input_check import check_trajectory
-from safety_island.control.records import (
-    INPUTS,
-    PARAMS,
-    POINT,
-    Records,
-    new_points,
-    pack_parameters,
-)
+from safety_island.control.records import INPUTS, PARAMS, POINT, new_points, pack_parameters
 from safety_island.control.status import Refusal
 from safety_island.kernel import kernel
+from safety_island.kernel.records import Records
 from tests.control.lateral_rig import line
 from tests.golden.harness import firmware
 

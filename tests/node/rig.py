@@ -9,10 +9,11 @@ from typing import Any
 import numpy as np
 
 from safety_island.can.mode import OutputMode
-from safety_island.control.records import COMMAND, POINT, TRACE, Records, new_points
+from safety_island.control.records import COMMAND, POINT, TRACE, new_points
 from safety_island.control.status import Mode, MpcStatus, Refusal
 from safety_island.dds import topics
 from safety_island.dds.topics import TopicEntry
+from safety_island.kernel.records import Records
 from safety_island.messages.inputs import (
     Acceleration,
     Odometry,

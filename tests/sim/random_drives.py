@@ -11,9 +11,10 @@ import numpy as np
 
 from safety_island import params
 from safety_island.control.follower import TrajectoryFollower
-from safety_island.control.records import COMMAND, Records
+from safety_island.control.records import COMMAND
 from safety_island.control.status import Mode
 from safety_island.dds import topics
+from safety_island.kernel.records import Records
 from safety_island.messages import inputs as codec
 from safety_island.messages.outputs import Control, decode_control
 from safety_island.messages.trajectory import encode_trajectory

@@ -8,8 +8,9 @@ import math
 import numpy as np
 import pytest
 
-from safety_island.control.records import COMMAND, Records
+from safety_island.control.records import COMMAND
 from safety_island.errors import ConfigurationError
+from safety_island.kernel.records import Records
 from safety_island.sim.closed_loop import ClosedLoop, drive
 from safety_island.sim.courses import COURSES, load_course
 

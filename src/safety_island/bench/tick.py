@@ -17,7 +17,7 @@ from safety_island import params
 from safety_island.bench import yardstick
 from safety_island.bench.node_tick import benchmark_run, node_round
 from safety_island.control.follower import TrajectoryFollower
-from safety_island.control.records import Records
+from safety_island.kernel.records import Records
 from safety_island.replay.recording import Recording
 
 _WARM_UP_ROUNDS = 2

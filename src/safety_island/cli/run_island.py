@@ -21,8 +21,8 @@ from safety_island.cli.stopping import StopAtOnce
 from safety_island.cli.tell import LOST
 from safety_island.cli.virtual import VirtualVehicle, course_of
 from safety_island.control.follower import TrajectoryFollower
-from safety_island.control.records import Records
 from safety_island.dds.config import URI, DdsConfig, user_xml
+from safety_island.kernel.records import Records
 from safety_island.node import ControllerNode, open_transport
 from safety_island.node.controller import NAME
 from safety_island.params import IslandParameters, notes

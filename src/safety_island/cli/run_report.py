@@ -11,8 +11,8 @@ from safety_island.cli.jsonlines import JsonLines
 from safety_island.cli.run_can import CanSide
 from safety_island.cli.status.names import guard_limits_of, input_name, verdict_of
 from safety_island.cli.tick_times import TickTimes
-from safety_island.control.records import Records
 from safety_island.control.status import LongitudinalState, MpcStatus
+from safety_island.kernel.records import Records
 from safety_island.node import Outcome, TickReport
 from safety_island.node.command_check import CommandCheck
 from safety_island.node.input import Input

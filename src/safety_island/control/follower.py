@@ -42,13 +42,12 @@ from safety_island.control.records import (
     COMMAND,
     INPUTS,
     TRACE,
-    Records,
-    cells,
     new_points,
     pack_parameters,
 )
 from safety_island.control.status import MpcStatus, Refusal
 from safety_island.control.trajectory_clean import clean_trajectory
+from safety_island.kernel.records import Records, cells
 
 INPUT_NAMES = ("trajectory", "odometry", "steering", "acceleration", "operation mode")
 """The five inputs without which there is no tick."""

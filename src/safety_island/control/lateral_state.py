@@ -14,7 +14,7 @@ from safety_island.control.limits import (
     MAX_SHAPE_HISTORY,
 )
 from safety_island.control.params import Parameters
-from safety_island.control.records import Records, record
+from safety_island.kernel.records import Records, record
 
 _STATES = 4  # of the largest vehicle model
 _SKEW = 40

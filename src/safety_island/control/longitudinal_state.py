@@ -6,8 +6,9 @@ from __future__ import annotations
 import numpy as np
 
 from safety_island.control.limits import MAX_HISTORY, MAX_POINTS
-from safety_island.control.records import POINT, Records, record
+from safety_island.control.records import POINT
 from safety_island.control.status import LongitudinalState
+from safety_island.kernel.records import Records, record
 
 LIST_CAPACITY = MAX_POINTS + 2
 """Points of the working list: a whole trajectory, the ego's point and the target point."""

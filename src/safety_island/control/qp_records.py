@@ -11,7 +11,7 @@ u_i - u_(i-1) with i = c - MAX_HORIZON from there on.
 from typing import Any
 
 from safety_island.control.limits import MAX_HORIZON
-from safety_island.control.records import record
+from safety_island.kernel.records import record
 
 _N = MAX_HORIZON
 _SET = MAX_HORIZON + 1  # at most n independent rows, and one that depends on them

@@ -11,7 +11,6 @@ from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from safety_island.control.limits import MAX_HORIZON, MAX_POINTS, MAX_RATE_TABLE
 from safety_island.control.params import (
@@ -23,30 +22,7 @@ from safety_island.control.params import (
 )
 from safety_island.control.release import Rules, rules_of
 from safety_island.control.status import ReferenceMode, SlopeSource, Solver, VehicleModel
-
-Records = npt.NDArray[Any]
-"""A one-dimensional array of records."""
-
-
-def record(columns: list[Any]) -> Any:
-    """Return a C-aligned record type whose fields read as attributes."""
-    return np.dtype((np.record, np.dtype(columns, align=True)))
-
-
-def cells(records: Records) -> dict[str, memoryview[Any]]:
-    """Return the scalar fields of a record of shape (1,), each as one number that can be set.
-
-    ``cell[0] = value`` takes half the time that NumPy takes. The record must stay where it is.
-    """
-    memory: Any = records.view(np.uint8).data
-    fields_of: Any = records.dtype.fields
-    places = ((name, *fields_of[name][:2]) for name in fields_of)
-    return {
-        name: memory[at : at + kind.itemsize].cast(kind.char)
-        for name, kind, at in places
-        if kind.names is None and not kind.shape
-    }
-
+from safety_island.kernel.records import Records, record
 
 _CHOICES: dict[str, Any] = {
     "slope_source": SlopeSource,

@@ -5,8 +5,8 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from safety_island.control.records import Records
 from safety_island.control.status import MpcStatus, Refusal
+from safety_island.kernel.records import Records
 
 
 class InputFollower(Protocol):

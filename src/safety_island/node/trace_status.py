@@ -10,8 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from safety_island.control.records import TRACE, Records
+from safety_island.control.records import TRACE
 from safety_island.control.status import ControllerLimit
+from safety_island.kernel.records import Records
 from safety_island.messages.fixed import reader
 from safety_island.messages.status import NO_VALUE
 

@@ -18,8 +18,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from safety_island.control.records import POINT, Records
+from safety_island.control.records import POINT
 from safety_island.errors import IslandError
+from safety_island.kernel.records import Records
 from safety_island.messages.wire import NANOSECONDS, Time
 from safety_island.replay import check
 from safety_island.replay.check import Table

@@ -7,9 +7,9 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
-from safety_island.control.records import Records
 from safety_island.control.status import Mode
 from safety_island.errors import ConfigurationError
+from safety_island.kernel.records import Records
 from safety_island.sim.courses import Course
 from safety_island.sim.metrics import Metrics
 from safety_island.sim.planner import Planner

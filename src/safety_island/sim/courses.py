@@ -13,8 +13,9 @@ from functools import cache, cached_property
 
 import numpy as np
 
-from safety_island.control.records import POINT, Records
+from safety_island.control.records import POINT
 from safety_island.errors import ConfigurationError
+from safety_island.kernel.records import Records
 from safety_island.sim.course_designs import DESIGNS
 from safety_island.sim.shapes import SPACING, Floats, Path, join, straight
 from safety_island.sim.speed_profile import (

@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from safety_island.control.records import Records
+from safety_island.kernel.records import Records
 from safety_island.sim.courses import DWELL_S, LEAD_IN, Course, Leg
 from safety_island.sim.projection import Place, locate
 from safety_island.sim.shapes import SPACING

@@ -7,9 +7,10 @@ from collections.abc import Callable
 
 import numpy as np
 
-from safety_island.control.records import POINT, Records
+from safety_island.control.records import POINT
 from safety_island.control.status import Mode
 from safety_island.dds.topics import TopicEntry
+from safety_island.kernel.records import Records
 from safety_island.messages import codec, inputs, outputs
 from safety_island.messages.trajectory import encode_trajectory
 from safety_island.messages.wire import Time

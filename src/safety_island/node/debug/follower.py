@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import Any
 
 from safety_island.control.follower import TrajectoryFollower
-from safety_island.control.records import Records
+from safety_island.kernel.records import Records
 
 
 class ObservedFollower(TrajectoryFollower):
