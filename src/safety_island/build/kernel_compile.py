@@ -21,6 +21,7 @@ from typing import IO
 from safety_island.build import kernel_ir
 from safety_island.build.errors import BuildError
 from safety_island.kernel import kernel
+from safety_island.kernel.entries import all_entries
 
 Report = Callable[[str, int, int], None]
 """Told the name of a kernel, its index and the count, before it is compiled."""
@@ -44,10 +45,7 @@ def entries(on_demand: bool = False) -> list[kernel.Entry]:
 
     ``on_demand``: also those that only the solver OSQP needs.
     """
-    import safety_island.control.follower
-    import safety_island.control.qp_alone  # noqa: F401  (these two define every entry)
-
-    return kernel.ENTRIES + (kernel.ON_DEMAND if on_demand else [])
+    return all_entries(on_demand)
 
 
 def kernel_irs(report: Report, on_demand: bool = False) -> dict[str, str]:

@@ -43,11 +43,10 @@ def prepare_kernels(on_demand: bool = False) -> None:
 
 def _missing(on_demand: bool) -> list[str]:
     """Name the island's kernels of which no compiled code is on disk."""
-    import safety_island.control.follower
-    import safety_island.control.qp_alone  # noqa: F401  (these two define every entry)
     from safety_island.kernel import kernel
+    from safety_island.kernel.entries import all_entries
 
-    wanted = kernel.ENTRIES + (kernel.ON_DEMAND if on_demand else [])
+    wanted = all_entries(on_demand)
     return [item.name for item in wanted if kernel.JIT and not item.is_on_disk()]
 
 
@@ -79,11 +78,9 @@ def _compile_kept(name: str, end: float) -> str:
 
 
 def _compile_one(name: str) -> str:
-    import safety_island.control.follower
-    import safety_island.control.qp_alone  # noqa: F401
-    from safety_island.kernel import kernel
+    from safety_island.kernel.entries import all_entries
 
-    entries = {item.name: item for item in kernel.ENTRIES + kernel.ON_DEMAND}
+    entries = {item.name: item for item in all_entries(on_demand=True)}
     entries[name].prepare()
     return name
 

@@ -284,10 +284,11 @@ def _summary(found: list[Condition], state: DemoState) -> dict[str, object]:
 
 def _prepare() -> None:
     """Compile ahead of the processes, so that all can see what is going on."""
-    import safety_island.control.follower  # noqa: F401  (defines every entry)
     from safety_island.cli.progress import prepare_kernels
     from safety_island.kernel import kernel
+    from safety_island.kernel.entries import all_entries
 
+    all_entries()
     if not kernel.is_cached():
         prepare_kernels()
 

@@ -1,0 +1,20 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Which modules define the entries: whoever compiles or counts them all has them imported here."""
+
+from __future__ import annotations
+
+from importlib import import_module
+
+from safety_island.kernel import kernel
+
+MODULES = (
+    "safety_island.control.follower",
+    "safety_island.control.qp_alone",
+)
+
+
+def all_entries(on_demand: bool = False) -> list[kernel.Entry]:
+    """Return every entry of the island, in the order of definition; ``on_demand``: those too."""
+    for name in MODULES:
+        import_module(name)
+    return kernel.ENTRIES + (kernel.ON_DEMAND if on_demand else [])
