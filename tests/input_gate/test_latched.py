@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 from safety_island.input_gate.latched import OVERTAKEN_S, REMEMBERED, WRITERS, LatchedGate
 from safety_island.input_gate.reason import SampleReason
 from safety_island.input_gate.sender_clock import SenderClock
-from safety_island.messages.wire import CDR_LE, Time
+from safety_island.kernel.cdr import CDR_LE
+from safety_island.messages.wire import Time
 from tests.input_gate.test_sender_clock import Input
 
 DUPLICATE, OLDER = SampleReason.DUPLICATE, SampleReason.OLDER

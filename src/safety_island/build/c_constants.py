@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sizes and enumerations of the control room as C constants."""
+"""Sizes and enumerations of the kernels as C constants."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from enum import IntEnum
 
 from safety_island.control import limits, status
 from safety_island.control.longitudinal_state import LIST_CAPACITY
+from safety_island.kernel.cdr import DecodeReason
 
 _MACRO = "SAFETY_ISLAND_"
 
@@ -22,7 +23,7 @@ def sizes() -> Iterator[str]:
 
 def enumerations() -> Iterator[str]:
     """Yield the lines of each enumeration: what a status or a field of a record means."""
-    for kind in vars(status).values():
+    for kind in (*vars(status).values(), DecodeReason):
         if not inspect.isclass(kind) or not issubclass(kind, IntEnum) or kind is IntEnum:
             continue
         yield f"/* {kind.__name__}: {inspect.getdoc(kind)} */".replace("``", "")

@@ -3,12 +3,41 @@
 
 from __future__ import annotations
 
+from collections.abc import Sized
+from typing import Protocol
+
 from safety_island.input_gate.frames import frames
 from safety_island.input_gate.params import GateParams
 from safety_island.input_gate.reason import SampleReason
 from safety_island.input_gate.stamps import StampGate
-from safety_island.messages.inputs import Acceleration, Odometry
-from safety_island.messages.trajectory import Trajectory
+
+
+class Framed(Protocol):
+    """A message in a frame."""
+
+    @property
+    def frame_id(self) -> str:
+        """Name of the frame."""
+
+
+class Path(Framed, Protocol):
+    """A trajectory."""
+
+    @property
+    def points(self) -> Sized:
+        """Its points."""
+
+
+class Motion(Framed, Protocol):
+    """Odometry."""
+
+    @property
+    def child_frame_id(self) -> str:
+        """Frame of the velocity."""
+
+    @property
+    def vx(self) -> float:
+        """Speed along body x [m/s]."""
 
 
 class ContentGate:
@@ -21,15 +50,13 @@ class ContentGate:
         self._fewest_points = params.min_trajectory_points
         self._moving_speed = params.moving_speed
 
-    def trajectory(
-        self, message: Trajectory, data: bytes, stamps: StampGate
-    ) -> SampleReason | None:
+    def trajectory(self, message: Path, data: bytes, stamps: StampGate) -> SampleReason | None:
         """Judge frame and number of points."""
         if message.frame_id not in self._map:
             return SampleReason.WRONG_FRAME
         return SampleReason.TOO_FEW_POINTS if len(message.points) < self._fewest_points else None
 
-    def odometry(self, message: Odometry, data: bytes, stamps: StampGate) -> SampleReason | None:
+    def odometry(self, message: Motion, data: bytes, stamps: StampGate) -> SampleReason | None:
         """Judge both frames; a vehicle that moves cannot repeat its odometry bit for bit."""
         if message.frame_id not in self._map or message.child_frame_id not in self._base:
             return SampleReason.WRONG_FRAME
@@ -37,8 +64,6 @@ class ContentGate:
             return SampleReason.FROZEN
         return None
 
-    def acceleration(
-        self, message: Acceleration, data: bytes, stamps: StampGate
-    ) -> SampleReason | None:
+    def acceleration(self, message: Framed, data: bytes, stamps: StampGate) -> SampleReason | None:
         """Judge the frame: Autoware's localization names the map here, its simulator the body."""
         return None if message.frame_id in self._either else SampleReason.WRONG_FRAME

@@ -26,7 +26,7 @@ from safety_island.input_gate.newest import NO_STAMP, TRIES, read_stamp
 from safety_island.input_gate.reason import SampleReason
 from safety_island.input_gate.sender_clock import SenderClock
 from safety_island.input_gate.stamps import STEP_TOLD_S
-from safety_island.messages.wire import NANOSECONDS, Time
+from safety_island.kernel.cdr import NANOSECONDS
 
 REMEMBERED = 256
 """Words of a writer that are known again: more than any writer keeps of what is latched."""
@@ -108,16 +108,19 @@ class LatchedGate:
                 order.insert(_place(order, read_stamp(sample.data)), sample)
         return order[:TRIES] or samples[-1:]
 
-    def judge(self, stamp: Time, word: Word, now: float, gives: bool) -> SampleReason | None:
+    def judge(
+        self, stamp: tuple[int, int], word: Word, now: float, gives: bool
+    ) -> SampleReason | None:
         """Say why a sample is refused, None when it is good.
 
         ``gives``: it gives autonomy; any other one takes it away.
         """
-        self._stamp_ns = stamp_ns = stamp.nanoseconds
+        sec, nanosec = stamp
+        self._stamp_ns = stamp_ns = sec * NANOSECONDS + nanosec
         self._source_ns = word.source_timestamp_ns
         self._writer = word.writer_guid
         said = self._said.get(word.writer_guid)
-        if stamp_ns <= 0 or stamp.nanosec >= NANOSECONDS:
+        if stamp_ns <= 0 or nanosec >= NANOSECONDS:
             reason: SampleReason | None = SampleReason.BAD_STAMP
         elif said is None:
             reason = None

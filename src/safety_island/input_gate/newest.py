@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from struct import Struct
 from typing import Protocol, TypeVar
 
-from safety_island.messages.wire import CDR_LE, HEADER_SIZE
+from safety_island.kernel.cdr import CDR_LE, HEADER_SIZE
 
 _STAMP = Struct("<iI")
 _SMALLEST = HEADER_SIZE + _STAMP.size

@@ -8,16 +8,21 @@ from __future__ import annotations
 
 from enum import IntEnum
 
+from safety_island.kernel.cdr import DecodeReason
+
+GOOD = -1
+"""In place of a reason: there is none."""
+
 
 class SampleReason(IntEnum):
     """Reasons of a refusal."""
 
-    ENCAPSULATION = 0
-    TRUNCATED = 1
-    LENGTH = 2
-    STRING = 3
-    BOOLEAN = 4
-    TRAILING = 5
+    ENCAPSULATION = DecodeReason.ENCAPSULATION
+    TRUNCATED = DecodeReason.TRUNCATED
+    LENGTH = DecodeReason.LENGTH
+    STRING = DecodeReason.STRING
+    BOOLEAN = DecodeReason.BOOLEAN
+    TRAILING = DecodeReason.TRAILING
     NOT_FINITE = 6
     OUT_OF_RANGE = 7
     BAD_QUATERNION = 8

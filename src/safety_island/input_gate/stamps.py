@@ -14,7 +14,7 @@ from collections.abc import Callable
 from safety_island.input_gate.clock_search import ClockSearch
 from safety_island.input_gate.reason import SampleReason
 from safety_island.input_gate.sender_clock import SenderClock
-from safety_island.messages.wire import NANOSECONDS, Time
+from safety_island.kernel.cdr import NANOSECONDS
 
 BEGIN_ANEW_S = 10.0
 """After this time [s] without a sample any stamp is accepted: the clock may have been set."""
@@ -87,7 +87,7 @@ class StampGate:
         self._calm_delay_s = self.usual_delay_s
 
     def judge(
-        self, stamp: Time, data: bytes, now: float, is_successor: bool = False
+        self, stamp: tuple[int, int], data: bytes, now: float, is_successor: bool = False
     ) -> SampleReason | None:
         """Say why a sample is refused, None when its stamp is good.
 

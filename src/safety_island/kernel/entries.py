@@ -10,6 +10,7 @@ from safety_island.kernel import kernel
 MODULES = (
     "safety_island.control.follower",
     "safety_island.control.qp_alone",
+    "safety_island.input_gate.decode.inputs",
 )
 
 

@@ -12,7 +12,7 @@ from functools import cache
 from pathlib import Path
 
 PACKAGE = Path(__file__).parents[1]
-ROOMS = ("kernel", "control")
+ROOMS = ("kernel", "control", "input_gate")
 """Folders of the package that hold kernels, or what they take constants from."""
 
 

@@ -7,7 +7,7 @@ from struct import Struct
 from typing import NamedTuple
 
 from safety_island.messages import wire
-from safety_island.messages.framed import of_size
+from safety_island.messages.codec import of_size
 from safety_island.messages.wire import HEADER_LE, Time
 
 CONTROL = "autoware_control_msgs/msg/Control"

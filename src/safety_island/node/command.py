@@ -5,9 +5,10 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from safety_island.kernel.cdr import NANOSECONDS
 from safety_island.life_cycle.ramp import Motion
 from safety_island.messages.outputs import Control
-from safety_island.messages.wire import NANOSECONDS, Time
+from safety_island.messages.wire import Time
 
 
 class Computed(NamedTuple):

@@ -5,8 +5,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from safety_island.kernel.cdr import NANOSECONDS
 from safety_island.messages.outputs import Control
-from safety_island.messages.wire import NANOSECONDS
 from safety_island.node.command import Computed
 from safety_island.node.outputs import ControlTopic, Output
 from safety_island.node.report import describe

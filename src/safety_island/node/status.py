@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 from safety_island.dds import topics
 from safety_island.input_gate.writers import MOST_OTHERS
+from safety_island.kernel.cdr import NANOSECONDS
 from safety_island.life_cycle.state import State
 from safety_island.messages.status import encode_values
-from safety_island.messages.wire import NANOSECONDS
 from safety_island.node.input_status import input_values
 from safety_island.node.outputs import TopicWriter
 from safety_island.node.report import describe
