@@ -15,7 +15,7 @@ from safety_island.input_gate.reason import SampleReason
 from safety_island.input_gate.sender_clock import SenderClock
 from safety_island.kernel.cdr import CDR_LE
 from safety_island.messages.wire import Time
-from tests.input_gate.test_sender_clock import Input
+from tests.input_gate.clock.other import Input
 
 DUPLICATE, OLDER = SampleReason.DUPLICATE, SampleReason.OLDER
 A, B = b"a" * 16, b"b" * 16
@@ -63,7 +63,7 @@ class Island:
         self.in_force: Word | None = None
         self.unusual = 0
         self.gate.on_unusual = self._note
-        self._other = Input(self.sender)
+        self._other = Input(self.sender, limit_s=1e6)
         self.shows(None)
 
     def _note(self) -> None:

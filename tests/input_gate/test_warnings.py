@@ -26,9 +26,9 @@ def told(
     rate_error: float = 0.0,
 ) -> int:
     stamps, rate, writers = StampGate(0.5), RateMeter(8.0), Writers(3)
-    stamps.delay_s, rate.too_low = delay_s, low
-    stamps.step_told_until = step_until
-    stamps.sender.rate_error = rate_error
+    stamps.state["delay_s"], rate.too_low = delay_s, low
+    stamps.state["step_told_until"] = step_until
+    stamps.sender.state["rate_error"] = rate_error
     if guids:
         writers.update(frozenset({A}), 0.0)
         writers.update(frozenset({B, A} if guids > 1 else {B}), 8.0)

@@ -22,6 +22,7 @@ from typing import Any
 import pytest
 from hypothesis import Phase, settings
 
+from safety_island.kernel import kernel
 from tests.mutation.mutants import Mutant
 
 ROOT = Path(__file__).parents[2]
@@ -60,7 +61,7 @@ class Room:
     def files(self) -> list[Path]:
         """Return every source file."""
         paths = [SOURCE / "safety_island" / name for name in self.sources]
-        found = [sorted(path.glob("*.py")) if path.is_dir() else [path] for path in paths]
+        found = [sorted(path.rglob("*.py")) if path.is_dir() else [path] for path in paths]
         return [file for files in found for file in files]
 
     def paths_of_tests(self) -> list[str]:
@@ -147,6 +148,7 @@ def start(room: Room, mutant: Mutant | None, limit_s: int) -> int:
     status = 1
     try:
         _silence()
+        kernel.JIT = False  # compiled code is that of the file, which no mutant changes
         if mutant is not None:
             finder: Any = _Mutated(ROOT / mutant.file, mutant.tree)
             sys.meta_path.insert(0, finder)

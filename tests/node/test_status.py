@@ -151,7 +151,8 @@ def test_the_inputs_are_told_in_the_order_of_the_message(rig: Rig) -> None:
     item = rig.node.inputs.items[ODOMETRY]
     item.refusals[4], item.writer_guid = 1, bytes(range(16))
     item.accepted, item.subscription.received, item.superseded, item.refused_in_a_row = 2, 3, 4, 5
-    item.stamps.delay_s, item.warnings, item.last_refusal = 0.25, 6, 7
+    item.stamps.state["delay_s"] = 0.25  # type: ignore[union-attr]
+    item.warnings, item.last_refusal = 6, 7
     item.writers.update(frozenset({b"a" * 16}), 0.0)
     item.writers.update(frozenset({b"a" * 16, b"b" * 16}), 1.0)
     counts = (0, 1, *(0,) * 30)

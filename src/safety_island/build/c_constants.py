@@ -9,6 +9,7 @@ from enum import IntEnum
 
 from safety_island.control import limits, status
 from safety_island.control.longitudinal_state import LIST_CAPACITY
+from safety_island.input_gate.clock.records import MAX_INPUTS
 from safety_island.kernel.cdr import DecodeReason
 
 _MACRO = "SAFETY_ISLAND_"
@@ -17,7 +18,7 @@ _MACRO = "SAFETY_ISLAND_"
 def sizes() -> Iterator[str]:
     """Yield a line for each bound of an array."""
     found = {name: value for name, value in vars(limits).items() if name.startswith("MAX_")}
-    for name, value in (found | {"LIST_CAPACITY": LIST_CAPACITY}).items():
+    for name, value in (found | {"LIST_CAPACITY": LIST_CAPACITY, "MAX_INPUTS": MAX_INPUTS}).items():
         yield f"#define {_MACRO}{name} {value}"
 
 

@@ -22,10 +22,10 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Protocol, TypeVar
 
+from safety_island.input_gate.clock.judge import STEP_TOLD_S
 from safety_island.input_gate.newest import NO_STAMP, TRIES, read_stamp
 from safety_island.input_gate.reason import SampleReason
 from safety_island.input_gate.sender_clock import SenderClock
-from safety_island.input_gate.stamps import STEP_TOLD_S
 from safety_island.kernel.cdr import NANOSECONDS
 
 REMEMBERED = 256

@@ -10,6 +10,8 @@ from safety_island.kernel import kernel
 MODULES = (
     "safety_island.control.follower",
     "safety_island.control.qp_alone",
+    "safety_island.input_gate.clock.judge",
+    "safety_island.input_gate.clock.sender",
     "safety_island.input_gate.decode.inputs",
 )
 

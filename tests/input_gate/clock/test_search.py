@@ -7,13 +7,29 @@ import math
 
 import pytest
 
-from safety_island.input_gate.clock_search import SEARCH_SHARE, ClockSearch
+from safety_island.input_gate.clock.records import new_stamps
+from safety_island.input_gate.clock.search import SEARCH_SHARE, finds, goes_on
 
 NEVER = -math.inf
 """When a stamp that fits came: not at all."""
 
 Seen = tuple[int, float]
 """Stamp [ns] and time of arrival [s]."""
+
+
+class ClockSearch:
+    """The search of one input with this age limit [s]."""
+
+    def __init__(self, limit_s: float) -> None:
+        self._one = new_stamps()[0]
+        self._one.limit_s = limit_s
+
+    def goes_on(self, now: float) -> bool:
+        return bool(goes_on(self._one, now))
+
+    def finds(self, stamp_ns: int, now: float, fitted_at: float) -> bool:
+        self._one.stamp_ns, self._one.held_at = stamp_ns, fitted_at
+        return bool(finds(self._one, now))
 
 
 def found(*seen: Seen) -> list[bool]:

@@ -3,37 +3,12 @@
 
 from __future__ import annotations
 
-import math
-
 import pytest
 
-from safety_island.input_gate.sender_clock import (
-    AGREE_S,
-    LARGEST_RATE_ERROR,
-    WINDOW_S,
-    SenderClock,
-)
-
-NEVER = -math.inf
-
-
-class Input:
-    """The stamps of an input, as far as the clock asks for them."""
-
-    def __init__(self, clock: SenderClock, fallen_s: float = 0.0, limit_s: float = 0.5) -> None:
-        self.held_ns, self.held_at, self.limit_s, self.steps = -1, NEVER, limit_s, 0
-        self.claimed_s, self.claimed_at = 0.0, NEVER
-        self.fallen, self.heard = fallen_s, True
-        clock.add(self)
-
-    def is_heard(self, now: float) -> bool:
-        return self.heard
-
-    def fallen_s(self) -> float:
-        return self.fallen
-
-    def forgive(self, seconds: float) -> None:
-        self.fallen -= seconds
+from safety_island.input_gate.clock import sender
+from safety_island.input_gate.clock.sender import AGREE_S, WINDOW_S
+from safety_island.input_gate.sender_clock import LARGEST_RATE_ERROR, SenderClock
+from tests.input_gate.clock.other import NEVER, Input
 
 
 @pytest.fixture
@@ -48,44 +23,44 @@ def three(clock: SenderClock, *fallen_s: float) -> list[Input]:
 class TestCommonFall:
     def test_the_least_is_forgiven_to_all(self, clock: SenderClock) -> None:
         inputs = three(clock, 0.5, 0.25, 0.375)
-        clock.forgive_common(inputs[0], 0.75, 0.0, 9.0)
+        sender.forgive_common(clock.stamps, 0, 0.75, 0.0, 9.0)
         assert [one.fallen for one in inputs] == [0.25, 0.0, 0.125]
 
     def test_it_may_be_that_of_the_one_that_asks(self, clock: SenderClock) -> None:
         inputs = three(clock, 0.0, 0.5, 0.375)
-        clock.forgive_common(inputs[0], 0.25, 0.0, 9.0)
+        sender.forgive_common(clock.stamps, 0, 0.25, 0.0, 9.0)
         assert [one.fallen for one in inputs] == [-0.25, 0.25, 0.125]
 
     @pytest.mark.parametrize("noise_s", [0.25, 0.5])
     def test_what_is_noise_is_left(self, clock: SenderClock, noise_s: float) -> None:
         inputs = three(clock, 0.5, 0.25)
-        clock.forgive_common(inputs[0], 0.5, noise_s, 9.0)
+        sender.forgive_common(clock.stamps, 0, 0.5, noise_s, 9.0)
         assert [one.fallen for one in inputs] == [0.5, 0.25]
 
     def test_one_that_has_not_fallen_behind_proves_delay(self, clock: SenderClock) -> None:
         inputs = three(clock, 0.5, 0.0, 0.5)
-        clock.forgive_common(inputs[0], 0.5, 0.0, 9.0)
+        sender.forgive_common(clock.stamps, 0, 0.5, 0.0, 9.0)
         assert [one.fallen for one in inputs] == [0.5, 0.0, 0.5]
 
     def test_one_that_is_not_heard_proves_nothing(self, clock: SenderClock) -> None:
         inputs = three(clock, 0.5, 0.0, 0.5)
         inputs[1].heard = False
-        clock.forgive_common(inputs[0], 0.5, 0.0, 9.0)
+        sender.forgive_common(clock.stamps, 0, 0.5, 0.0, 9.0)
         assert [one.fallen for one in inputs] == [0.0, 0.0, 0.0]
 
     def test_one_alone_has_no_common_clock(self, clock: SenderClock) -> None:
         inputs = three(clock, 0.5, 0.5)
         inputs[1].heard = False
-        clock.forgive_common(inputs[0], 0.5, 0.0, 9.0)
+        sender.forgive_common(clock.stamps, 0, 0.5, 0.0, 9.0)
         assert inputs[0].fallen == 0.5
 
     def test_the_furthest_of_the_others(self, clock: SenderClock) -> None:
         inputs = three(clock, 0.9, 0.25, 0.5)
-        assert clock.furthest_s(inputs[0], 9.0) == 0.5
+        assert sender.furthest_of_others(clock.stamps, 0, 9.0) == 0.5
         inputs[2].heard = False
-        assert clock.furthest_s(inputs[0], 9.0) == 0.25
+        assert sender.furthest_of_others(clock.stamps, 0, 9.0) == 0.25
         inputs[1].heard = False
-        assert clock.furthest_s(inputs[0], 9.0) == 0.0
+        assert sender.furthest_of_others(clock.stamps, 0, 9.0) == 0.0
 
 
 class TestStep:
@@ -105,13 +80,14 @@ class TestStep:
         self, clock: SenderClock, claimed_s: float, ago_s: float, found: bool
     ) -> None:
         one, other = three(clock, 0.0, 0.0)
+        one.claimed_s = 3.0
         other.claimed_s, other.claimed_at = claimed_s, 9.0 - ago_s
-        assert clock.has_stepped(one, 3.0, 9.0) is found
+        assert sender.has_stepped(clock.stamps, 0, 9.0) == found
 
     def test_its_own_claim_is_no_proof(self, clock: SenderClock) -> None:
         one, _ = three(clock, 0.0, 0.0)
         one.claimed_s, one.claimed_at = 3.0, 9.0
-        assert not clock.has_stepped(one, 3.0, 9.0)
+        assert not sender.has_stepped(clock.stamps, 0, 9.0)
 
 
 def test_the_time_by_the_sender_is_the_highest_stamp(clock: SenderClock) -> None:
