@@ -12,8 +12,8 @@ from safety_island.cli import status_page
 from safety_island.cli.status.docs import member_docs, message_fields
 from safety_island.cli.status_page import PAGE, main, render
 from safety_island.control.status import ControllerLimit
-from safety_island.gate import reason as sample_reason
-from safety_island.gate import warning
+from safety_island.input_gate import reason as sample_reason
+from safety_island.input_gate import warning
 from safety_island.life_cycle import reason
 from safety_island.life_cycle.state import State
 from safety_island.messages import registry

@@ -20,6 +20,7 @@ from safety_island.dds.endpoints import Publisher, Subscription
 from safety_island.dds.qos import DEFAULT
 from safety_island.dds.raw_topic import OpaqueTopic
 from safety_island.dds.topics import TopicEntry
+from safety_island.kernel.cdr import DecodeReason
 from safety_island.messages import inputs
 from safety_island.messages.errors import DecodeError
 from safety_island.messages.trajectory import decode_trajectory
@@ -124,13 +125,19 @@ def test_other_encapsulations(
     assert way.decoded(kind.to_bytes(2, "big") + way.good[2:]) == 0
 
 
+@pytest.mark.parametrize(
+    ("count", "found"),
+    [(4150, "4150 points, at most 4096"), (20_000, "1760028 bytes, at most 368640")],
+)
 def test_more_points_than_there_is_room_for(
-    channel: Callable[[TopicEntry], Channel],
+    channel: Callable[[TopicEntry], Channel], count: int, found: str
 ) -> None:
+    """A sample that is larger than any that could be accepted is refused by its size alone."""
     way = channel(topics.TRAJECTORY)
-    (received,) = way.through(trajectory_bytes(20_000))
-    with pytest.raises(DecodeError, match="20000 points, at most 4096"):
+    (received,) = way.through(trajectory_bytes(count))
+    with pytest.raises(DecodeError, match=found) as refused:
         decode_trajectory(received, new_points())
+    assert refused.value.reason is DecodeReason.LENGTH
 
 
 @pytest.fixture

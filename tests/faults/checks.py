@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import pytest
 
-from safety_island.gate.warning import InputWarning
+from safety_island.input_gate.warning import InputWarning
 from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State
 from safety_island.node.report import TickReport

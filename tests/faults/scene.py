@@ -14,7 +14,7 @@ from safety_island.command.mode import OutputMode
 from safety_island.control.follower import TrajectoryFollower
 from safety_island.control.status import Mode
 from safety_island.dds import topics
-from safety_island.gate.reason import SampleReason
+from safety_island.input_gate.reason import SampleReason
 from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State
 from safety_island.messages.outputs import Control

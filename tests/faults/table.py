@@ -49,8 +49,8 @@ What is decided, where another reaction could be expected:
 - 7, 34, 81: a mode whose stamp or source time is older than that of the one in force, by the same
   writer, gives no autonomy; one that takes it away is accepted, once. Only where the other inputs
   show that the clock was set back does an older stamp engage. What its writer has said before, byte
-  for byte, changes nothing. (It used to be that any older stamp counted: `src/safety_island/gate/`
-  `latched.py` has the rule.)
+  for byte, changes nothing. (It used to be that any older stamp counted:
+  `src/safety_island/input_gate/latched.py` has the rule.)
 - 35: a stamp from the far future may be that of a clock that was set. It is taken, and warned of
   (`CLOCK`, `CLOCK_STEP`).
 - 37: after a sleep nobody knows where the vehicle is, so there is no ramp, with `CAN_ONLY` neither;

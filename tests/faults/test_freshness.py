@@ -11,7 +11,7 @@ from itertools import permutations
 import pytest
 
 from safety_island.control.status import Mode
-from safety_island.gate.reason import SampleReason
+from safety_island.input_gate.reason import SampleReason
 from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State
 from tests.faults import wire

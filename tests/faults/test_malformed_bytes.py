@@ -15,7 +15,7 @@ from safety_island.control.input_check import MAX_ACCELERATION, MAX_POSITION, MA
 from safety_island.dds import topics
 from safety_island.dds.qos import DEFAULT
 from safety_island.errors import ConfigurationError
-from safety_island.gate.reason import SampleReason
+from safety_island.input_gate.reason import SampleReason
 from safety_island.life_cycle.reason import Reason
 from safety_island.messages import codec
 from tests.faults import edit, wire

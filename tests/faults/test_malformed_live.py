@@ -17,7 +17,7 @@ from safety_island.control.follower import TrajectoryFollower
 from safety_island.dds import topics
 from safety_island.dds.raw_topic import OpaqueTopic
 from safety_island.dds.topics import TopicEntry
-from safety_island.gate.reason import SampleReason
+from safety_island.input_gate.reason import SampleReason
 from safety_island.node.controller import ControllerNode
 from safety_island.node.report import TickReport
 from safety_island.params import load_set

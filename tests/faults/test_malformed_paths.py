@@ -16,8 +16,8 @@ import pytest
 
 from safety_island.control.records import POINT
 from safety_island.control.status import LongitudinalState
-from safety_island.gate.reason import SampleReason
-from safety_island.gate.warning import InputWarning
+from safety_island.input_gate.reason import SampleReason
+from safety_island.input_gate.warning import InputWarning
 from safety_island.kernel.records import Records
 from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State

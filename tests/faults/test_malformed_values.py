@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from safety_island.control.records import POINT
-from safety_island.gate.reason import SampleReason
+from safety_island.input_gate.reason import SampleReason
 from safety_island.kernel.records import Records
 from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State

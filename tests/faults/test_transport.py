@@ -9,8 +9,8 @@ from random import Random
 import pytest
 
 from safety_island.control.status import Mode
-from safety_island.gate.reason import SampleReason
-from safety_island.gate.warning import InputWarning
+from safety_island.input_gate.reason import SampleReason
+from safety_island.input_gate.warning import InputWarning
 from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State
 from tests.faults import wire

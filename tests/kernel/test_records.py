@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Records: how they are laid out, and their fields as cells that can be set."""
 
-"""Fields of a record as cells that can be set."""
-
 from __future__ import annotations
 
 import numpy as np

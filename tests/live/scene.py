@@ -13,7 +13,7 @@ from pathlib import Path
 
 from safety_island.cli.demo.children import bridge_file
 from safety_island.dds import topics
-from safety_island.gate.reason import SampleReason
+from safety_island.input_gate.reason import SampleReason
 from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State
 from safety_island.messages.status_fields import InputStatus, Status

@@ -9,7 +9,7 @@ import pytest
 
 from safety_island.dds import topics
 from safety_island.dds.topics import TopicEntry
-from safety_island.gate.warning import InputWarning
+from safety_island.input_gate.warning import InputWarning
 from safety_island.life_cycle.state import State
 from safety_island.messages.status_fields import Status
 from tests.live.driver import Driver

@@ -8,7 +8,7 @@ import math
 import pytest
 
 from safety_island.dds import topics
-from safety_island.gate.reason import SampleReason
+from safety_island.input_gate.reason import SampleReason
 from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State
 from tests.live.driver import Driver

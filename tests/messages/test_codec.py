@@ -10,8 +10,9 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from safety_island.kernel.cdr import DecodeReason
 from safety_island.messages import codec, registry
-from safety_island.messages.errors import DecodeError, DecodeReason, EncodeError
+from safety_island.messages.errors import DecodeError, EncodeError
 from tests.messages.oracle import cyclone_bytes, rosbags_bytes
 from tests.messages.strategies import messages
 

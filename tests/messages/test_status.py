@@ -12,13 +12,14 @@ from rosbags.typesys import get_types_from_idl, get_types_from_msg
 
 from safety_island.command.mode import OutputMode
 from safety_island.control.status import ControllerLimit
-from safety_island.gate.reason import SampleReason
-from safety_island.gate.warning import InputWarning
+from safety_island.input_gate.reason import SampleReason
+from safety_island.input_gate.warning import InputWarning
+from safety_island.kernel.cdr import DecodeReason
 from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State
 from safety_island.messages import codec, registry
 from safety_island.messages.arm import ARM, ArmResult
-from safety_island.messages.errors import DecodeError, DecodeReason
+from safety_island.messages.errors import DecodeError
 from safety_island.messages.status import (
     INPUT_STATUS,
     NO_VALUE,

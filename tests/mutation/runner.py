@@ -38,7 +38,7 @@ WARM = ("safety_island.control.follower", "safety_island.params", "tests.conftes
 """Slow to import; what they import of the rooms below is forgotten again."""
 
 ABOVE = (
-    *("gate", "life_cycle", "guard", "command", "core", "can", "params", "bridge", "node"),
+    *("input_gate", "life_cycle", "guard", "command", "core", "can", "params", "bridge", "node"),
     *("sim", "replay", "cli", "bench"),
 )
 """Rooms that are mutated or import one that is; a fork imports them anew."""
@@ -61,7 +61,7 @@ class Room:
     def files(self) -> list[Path]:
         """Return every source file."""
         paths = [SOURCE / "safety_island" / name for name in self.sources]
-        found = [sorted(path.glob("*.py")) if path.is_dir() else [path] for path in paths]
+        found = [sorted(path.rglob("*.py")) if path.is_dir() else [path] for path in paths]
         return [file for files in found for file in files]
 
     def paths_of_tests(self) -> list[str]:
@@ -81,7 +81,7 @@ PAGE = "tests/params/test_document.py"
 """The page of the parameters, which holds the units and ranges of a room's own."""
 
 ROOMS = (
-    Room("gate", ("gate",), ("tests/gate", PAGE)),
+    Room("input_gate", ("input_gate",), ("tests/input_gate", PAGE)),
     Room("life_cycle", ("life_cycle",), ("tests/life_cycle", PAGE)),
     Room("guard", ("guard", "core/guard.py"), ("tests/guard", "tests/core", PAGE)),
     Room("command", ("command", "can/encoder.py"), ("tests/command", "tests/can/test_encoder.py")),

@@ -16,7 +16,7 @@ from safety_island.control.limits import MAX_POINTS
 from safety_island.control.records import POINT
 from safety_island.dds import topics
 from safety_island.dds.topics import TopicEntry
-from safety_island.gate.reason import SampleReason
+from safety_island.input_gate.reason import SampleReason
 from safety_island.messages.inputs import (
     Acceleration,
     Odometry,

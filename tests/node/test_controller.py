@@ -9,7 +9,7 @@ import pytest
 
 from safety_island.control.status import Mode, Refusal
 from safety_island.dds import topics
-from safety_island.gate.reason import SampleReason
+from safety_island.input_gate.reason import SampleReason
 from safety_island.node.report import Outcome
 from tests.node.rig import ROWS, FakeFollower, Rig
 

@@ -8,7 +8,7 @@ import math
 import pytest
 
 from safety_island.control.status import MpcStatus
-from safety_island.gate.reason import SampleReason
+from safety_island.input_gate.reason import SampleReason
 from safety_island.node.report import Outcome
 from tests.node.rig import ROWS, FakeFollower, Rig
 

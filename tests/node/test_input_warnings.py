@@ -8,7 +8,7 @@ from collections.abc import Callable
 import pytest
 
 from safety_island.dds import topics
-from safety_island.gate.warning import InputWarning
+from safety_island.input_gate.warning import InputWarning
 from safety_island.messages.inputs import Steering, encode_steering
 from safety_island.messages.wire import Time
 from safety_island.node.input_set import STEERING

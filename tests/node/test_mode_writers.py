@@ -7,7 +7,7 @@ import pytest
 
 from safety_island.control.status import Mode
 from safety_island.dds import topics
-from safety_island.gate.reason import SampleReason
+from safety_island.input_gate.reason import SampleReason
 from safety_island.life_cycle.reason import Reason
 from safety_island.messages.inputs import OperationMode, encode_operation_mode
 from safety_island.messages.wire import Time

@@ -12,9 +12,9 @@ import pytest
 from safety_island.command.status_message import SNAPSHOT_LAYOUT
 from safety_island.control.status import ControllerLimit, LongitudinalState, Mode, MpcStatus
 from safety_island.dds import topics
-from safety_island.gate.reason import SampleReason
-from safety_island.gate.warning import InputWarning
 from safety_island.guard import Verdict
+from safety_island.input_gate.reason import SampleReason
+from safety_island.input_gate.warning import InputWarning
 from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State
 from safety_island.messages.inputs import Steering
@@ -156,7 +156,8 @@ def test_the_inputs_are_told_in_the_order_of_the_message(rig: Rig) -> None:
     item.refusals[4], item.writer_guid = 1, bytes(range(16))
     item.message, item.source_ns = Steering(Time(8, 9), 0.0), 10
     item.accepted, item.subscription.received, item.superseded, item.refused_in_a_row = 2, 3, 4, 5
-    item.stamps.delay_s, item.warnings, item.last_refusal = 0.25, 6, 7
+    item.stamps.state["delay_s"] = 0.25  # type: ignore[union-attr]
+    item.warnings, item.last_refusal = 6, 7
     item.writers.update(frozenset({b"a" * 16}), 0.0)
     item.writers.update(frozenset({b"a" * 16, b"b" * 16}), 1.0)
     counts = (0, 1, *(0,) * 30)

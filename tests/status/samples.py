@@ -11,7 +11,7 @@ from safety_island.control.status import ControllerLimit, LongitudinalState, Mod
 from safety_island.dds.config import DdsConfig
 from safety_island.dds.participant import Participant
 from safety_island.dds.topics import ARM, STATUS
-from safety_island.gate.reason import SampleReason
+from safety_island.input_gate.reason import SampleReason
 from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State
 from safety_island.messages.arm import decode_arm

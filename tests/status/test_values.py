@@ -8,7 +8,7 @@ from typing import Any
 
 from hypothesis import given, settings
 
-from safety_island.gate.reason import SampleReason
+from safety_island.input_gate.reason import SampleReason
 from safety_island.messages import codec
 from safety_island.messages.status import STATUS, decode_status
 from safety_island.status.names import guard_limits_of

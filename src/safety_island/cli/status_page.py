@@ -12,8 +12,8 @@ from typing import Any
 
 from safety_island.cli.status.docs import member_docs, message_fields
 from safety_island.control.status import ControllerLimit
-from safety_island.gate.reason import EXPLANATIONS as SAMPLE_REASONS
-from safety_island.gate.warning import EXPLANATIONS as WARNINGS
+from safety_island.input_gate.reason import EXPLANATIONS as SAMPLE_REASONS
+from safety_island.input_gate.warning import EXPLANATIONS as WARNINGS
 from safety_island.life_cycle.reason import EXPLANATIONS as REASONS
 from safety_island.life_cycle.state import State
 from safety_island.messages.arm import ARM, ArmResult

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Kernel: a time as the stamp of a message."""
 
+from safety_island.kernel.cdr import NANOSECONDS
 from safety_island.kernel.kernel import kernel
-from safety_island.messages.wire import NANOSECONDS
 
 _EARLIEST, _LATEST = -(1 << 31), (1 << 31) - 1
 """Seconds that ``builtin_interfaces/msg/Time`` can hold."""

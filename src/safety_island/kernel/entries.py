@@ -16,6 +16,9 @@ MODULES = (
     "safety_island.command.status_message",
     "safety_island.life_cycle.tick",
     "safety_island.life_cycle.island_watch",
+    "safety_island.input_gate.clock.judge",
+    "safety_island.input_gate.clock.sender",
+    "safety_island.input_gate.decode.inputs",
 )
 
 

@@ -13,7 +13,16 @@ from pathlib import Path
 
 from safety_island.package import PACKAGE
 
-ROOMS = ("kernel", "control", "command", "life_cycle", "guard", "core", "messages")
+ROOMS = (
+    "kernel",
+    "control",
+    "command",
+    "life_cycle",
+    "guard",
+    "core",
+    "input_gate",
+    "messages",
+)
 """Folders of the package that hold kernels, or what they take constants and layouts from."""
 _SUFFIXES = {".py", ".idl"}
 

@@ -7,7 +7,7 @@ from enum import IntEnum
 from struct import Struct
 from typing import NamedTuple
 
-from safety_island.messages.framed import of_size
+from safety_island.messages.codec import of_size
 from safety_island.messages.wire import HEADER_LE, Time
 
 ARM = "safety_island_msgs/msg/Arm"

@@ -9,6 +9,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from safety_island.kernel.cdr import HEADER_SIZE, DecodeReason
 from safety_island.messages import registry, wire
 from safety_island.messages.description import (
     CODES,
@@ -20,7 +21,7 @@ from safety_island.messages.description import (
     Sequence,
     String,
 )
-from safety_island.messages.errors import DecodeError, DecodeReason
+from safety_island.messages.errors import DecodeError
 
 
 @cache
@@ -42,7 +43,7 @@ class Reader:
         self._data = data
         self._order: Literal["<", ">"] = "<" if little else ">"
         self._type_name = type_name
-        self.offset = wire.HEADER_SIZE
+        self.offset = HEADER_SIZE
 
     def named(self, name: str) -> dict[str, Any]:
         """Read a message of the type ``name``; DecodeError when the data are none."""

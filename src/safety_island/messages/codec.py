@@ -11,6 +11,7 @@ import struct
 from collections.abc import Mapping
 from typing import Any
 
+from safety_island.kernel.cdr import CDR_LE
 from safety_island.messages import wire
 from safety_island.messages.cdr_reader import Reader
 from safety_island.messages.cdr_writer import Writer
@@ -52,3 +53,13 @@ def default(type_name: str) -> dict[str, Any]:
 def to_little_endian(type_name: str, data: bytes) -> bytes:
     """Return the same message as little-endian CDR; DecodeError when it is no message."""
     return encode(type_name, decode(type_name, data))
+
+
+def of_size(data: bytes, size: int, type_name: str) -> bytes:
+    """Return ``data`` as little-endian CDR that fills ``size`` up to padding, else DecodeError."""
+    if len(data) == size and data[:2] == CDR_LE:
+        return data
+    if not wire.is_little_endian(data, type_name):
+        data = to_little_endian(type_name, data)
+    wire.check_end(data, size, type_name)
+    return data

@@ -3,26 +3,8 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
-
 from safety_island.errors import IslandError
-
-
-class DecodeReason(StrEnum):
-    """Why bytes were refused."""
-
-    ENCAPSULATION = "encapsulation"
-    """The first four bytes do not announce plain CDR (XCDR1)."""
-    TRUNCATED = "truncated"
-    """The bytes end inside a field, or a length says that more must come."""
-    LENGTH = "length"
-    """A string or sequence is longer than its type or the receiver allows."""
-    STRING = "string"
-    """A string lacks its closing NUL, has another before it, or is not UTF-8."""
-    BOOLEAN = "boolean"
-    """A boolean is neither 0 nor 1."""
-    TRAILING = "trailing"
-    """More bytes follow the message than padding explains."""
+from safety_island.kernel.cdr import DecodeReason
 
 
 class DecodeError(IslandError):

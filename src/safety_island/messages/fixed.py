@@ -16,12 +16,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from safety_island.kernel.cdr import HEADER_SIZE
 from safety_island.kernel.records import Records, record
 from safety_island.messages import wire
 from safety_island.messages.description import CODES, Array, Field, Named, Primitive
 from safety_island.messages.errors import IdlError
 from safety_island.messages.registry import struct_of
-from safety_island.messages.wire import HEADER_LE, HEADER_SIZE
+from safety_island.messages.wire import HEADER_LE
 
 _WIDE = {"L": "Q", "l": "q"}
 """Letter of NumPy -> letter of ``struct`` for the same size, where they differ."""

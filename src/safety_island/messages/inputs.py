@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The five inputs of a tick: decoders that cost a few microseconds, and their encoders.
+"""The inputs of a tick but for the trajectory: their encoders and decoders.
 
-Each decoder takes serialized plain CDR with its header, checks every length before it is used, and
-raises DecodeError for whatever is not a whole message. Values are not judged: NaN passes.
+Each decoder takes serialized plain CDR with its header, and raises DecodeError for whatever is not
+a whole message. Values are not judged: NaN passes. The kernels that decode are loaded, and compiled
+where they are on no disk, with the first sample.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from struct import Struct
 from typing import NamedTuple
 
 from safety_island.messages import wire
-from safety_island.messages.framed import Framed, of_size
+from safety_island.messages.decoders import decoders
 from safety_island.messages.wire import HEADER_LE, Time
 
 ODOMETRY = "nav_msgs/msg/Odometry"
@@ -20,18 +21,10 @@ ACCELERATION = "geometry_msgs/msg/AccelWithCovarianceStamped"
 STEERING = "autoware_vehicle_msgs/msg/SteeringReport"
 OPERATION_MODE = "autoware_adapi_v1_msgs/msg/OperationModeState"
 
-_COVARIANCE = 36 * 8
 _TIME = Struct("<iI")
-_ODOMETRY = Framed(ODOMETRY, 2, f"7d{_COVARIANCE}x6d{_COVARIANCE}x")
-_ACCELERATION = Framed(ACCELERATION, 1, f"6d{_COVARIANCE}x")
 _STEERING = Struct("<4siIf")
-_STEERING_SIZE = _STEERING.size
 _MODE = Struct("<4siIB6?")
-_MODE_SIZE = _MODE.size
-_MODE_BODY = slice(12, 19)
 _ZEROS = (0.0,) * 36
-_new = tuple.__new__
-"""The constructor that a NamedTuple writes for itself takes twice as long."""
 
 
 class Odometry(NamedTuple):
@@ -90,8 +83,8 @@ class OperationMode(NamedTuple):
 
 def decode_odometry(data: bytes) -> Odometry:
     """Return the odometry of a nav_msgs/msg/Odometry; covariances are stepped over."""
-    values = _ODOMETRY.read(data)
-    return _new(Odometry, (_new(Time, values[:2]), *_ODOMETRY.texts, *values[2:]))
+    sec, nanosec, *rest = decoders().odometry(data, ODOMETRY)
+    return Odometry(Time(sec, nanosec), *rest)
 
 
 def encode_odometry(
@@ -108,8 +101,8 @@ def encode_odometry(
 
 def decode_acceleration(data: bytes) -> Acceleration:
     """Return the acceleration of a geometry_msgs/msg/AccelWithCovarianceStamped."""
-    values = _ACCELERATION.read(data)
-    return _new(Acceleration, (_new(Time, values[:2]), *_ACCELERATION.texts, *values[2:]))
+    sec, nanosec, *rest = decoders().acceleration(data, ACCELERATION)
+    return Acceleration(Time(sec, nanosec), *rest)
 
 
 def encode_acceleration(
@@ -123,9 +116,8 @@ def encode_acceleration(
 
 def decode_steering(data: bytes) -> Steering:
     """Return the angle of an autoware_vehicle_msgs/msg/SteeringReport."""
-    data = of_size(data, _STEERING_SIZE, STEERING)
-    _, sec, nanosec, angle = _STEERING.unpack_from(data)
-    return _new(Steering, (_new(Time, (sec, nanosec)), angle))
+    sec, nanosec, *rest = decoders().steering(data, STEERING)
+    return Steering(Time(sec, nanosec), *rest)
 
 
 def encode_steering(steering: Steering) -> bytes:
@@ -135,15 +127,8 @@ def encode_steering(steering: Steering) -> bytes:
 
 def decode_operation_mode(data: bytes) -> OperationMode:
     """Return the state of an autoware_adapi_v1_msgs/msg/OperationModeState."""
-    data = of_size(data, _MODE_SIZE, OPERATION_MODE)
-    return _new(OperationMode, (_new(Time, _TIME.unpack_from(data, 4)), *_mode(data[_MODE_BODY])))
-
-
-@lru_cache(maxsize=64)
-def _mode(body: bytes) -> tuple[int | bool, ...]:
-    """Return mode and flags; there are few, told again and again."""
-    mode, *flags = body
-    return mode, *(wire.read_bool(flag, OPERATION_MODE) for flag in flags)
+    sec, nanosec, *rest = decoders().operation_mode(data, OPERATION_MODE)
+    return OperationMode(Time(sec, nanosec), *rest)
 
 
 def encode_operation_mode(state: OperationMode) -> bytes:
@@ -154,7 +139,7 @@ def encode_operation_mode(state: OperationMode) -> bytes:
 @lru_cache(maxsize=64)
 def string_prefix(*texts: str) -> tuple[bytes, int]:
     """Return strings that follow a stamp, as bytes, and the place after them in the message."""
-    start = wire.HEADER_SIZE + _TIME.size
+    start = len(HEADER_LE) + _TIME.size
     data = bytearray()
     for text in texts:
         body = wire.string_bytes(text)

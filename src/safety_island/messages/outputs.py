@@ -6,8 +6,8 @@ from __future__ import annotations
 from struct import Struct
 from typing import NamedTuple
 
+from safety_island.messages.codec import of_size
 from safety_island.messages.fixed import check_flags, layout, record_type
-from safety_island.messages.framed import of_size
 from safety_island.messages.wire import HEADER_LE, Time
 
 CONTROL = "autoware_control_msgs/msg/Control"

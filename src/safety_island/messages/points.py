@@ -36,9 +36,6 @@ POINT: Any = np.dtype((np.record, np.dtype([*_HEAD, *_TIME], align=True)))
 The same layout as ``control.records.POINT`` (a test compares them).
 """
 
-POINT_HEAD: Any = np.dtype((np.record, np.dtype(_HEAD)))
-"""A point without the next point's time, 80 bytes: what a zero-copy view can promise for all."""
-
 TIME_SIZE = 8
 
 Points = npt.NDArray[Any]

@@ -9,10 +9,11 @@ from typing import Any
 
 import numpy as np
 
+from safety_island.kernel.cdr import HEADER_SIZE
+from safety_island.messages.codec import of_size
 from safety_island.messages.fixed import check_flags, layout, record_type
-from safety_island.messages.framed import of_size
 from safety_island.messages.status_fields import InputStatus, Status
-from safety_island.messages.wire import HEADER_LE, HEADER_SIZE, Time
+from safety_island.messages.wire import HEADER_LE, Time
 
 STATUS = "safety_island_msgs/msg/Status"
 INPUT_STATUS = "safety_island_msgs/msg/InputStatus"

@@ -3,18 +3,20 @@
 
 from __future__ import annotations
 
-from struct import Struct, error
 from typing import NamedTuple
 
-from safety_island.messages.errors import DecodeError, DecodeReason, EncodeError
+from safety_island.kernel.cdr import (
+    CDR_BE,
+    CDR_LE,
+    HEADER_SIZE,
+    MAX_PADDING,
+    NANOSECONDS,
+    DecodeReason,
+)
+from safety_island.messages.errors import DecodeError, EncodeError
 
-CDR_LE = b"\x00\x01"
-CDR_BE = b"\x00\x00"
 HEADER_LE = b"\x00\x01\x00\x00"
 """Encapsulation header of plain little-endian CDR; alignment counts from the byte after it."""
-HEADER_SIZE = 4
-MAX_PADDING = 3
-"""RTPS pads a payload to a multiple of four bytes."""
 
 _KINDS = {
     b"\x00\x02": "PL_CDR (big endian)",
@@ -26,8 +28,6 @@ _KINDS = {
     b"\x00\x0a": "PL_CDR2 (big endian)",
     b"\x00\x0b": "PL_CDR2 (little endian)",
 }
-_U32 = Struct("<I")
-NANOSECONDS = 1_000_000_000
 
 
 class Time(NamedTuple):
@@ -72,17 +72,20 @@ def is_little_endian(data: bytes, type_name: str) -> bool:
 
     Raises DecodeError for every other encapsulation and for data without a whole header.
     """
+    if len(data) < HEADER_SIZE:
+        raise truncated(type_name, HEADER_SIZE, len(data))
     kind = bytes(data[:2])
-    if len(data) >= HEADER_SIZE:
-        if kind == CDR_LE:
-            return True
-        if kind == CDR_BE:
-            return False
-        found = _KINDS.get(kind, f"unknown encapsulation 0x{kind.hex()}")
-        detail = f"found {found}, expected plain CDR (XCDR1)"
-        raise DecodeError(DecodeReason.ENCAPSULATION, type_name, detail)
-    detail = f"{len(data)} bytes are no message, a header alone has {HEADER_SIZE}"
-    raise DecodeError(DecodeReason.TRUNCATED, type_name, detail)
+    if kind not in (CDR_LE, CDR_BE):
+        raise other_encapsulation(type_name, data)
+    return kind == CDR_LE
+
+
+def other_encapsulation(type_name: str, data: bytes) -> DecodeError:
+    """Return the error for a header that does not announce plain CDR."""
+    kind = bytes(data[:2])
+    found = _KINDS.get(kind, f"unknown encapsulation 0x{kind.hex()}")
+    detail = f"found {found}, expected plain CDR (XCDR1)"
+    return DecodeError(DecodeReason.ENCAPSULATION, type_name, detail)
 
 
 def truncated(type_name: str, needed: int, available: int) -> DecodeError:
@@ -91,25 +94,29 @@ def truncated(type_name: str, needed: int, available: int) -> DecodeError:
     return DecodeError(DecodeReason.TRUNCATED, type_name, detail)
 
 
+def trailing(type_name: str, surplus: int) -> DecodeError:
+    """Return the error for ``surplus`` bytes behind a message."""
+    return DecodeError(DecodeReason.TRAILING, type_name, f"{surplus} bytes follow the message")
+
+
+def no_string(type_name: str) -> DecodeError:
+    """Return the error for a string that is none."""
+    detail = "a string is not UTF-8 that ends at its first NUL"
+    return DecodeError(DecodeReason.STRING, type_name, detail)
+
+
+def no_boolean(type_name: str, value: int) -> DecodeError:
+    """Return the error for a boolean that is neither 0 nor 1."""
+    return DecodeError(DecodeReason.BOOLEAN, type_name, f"{value} is no boolean")
+
+
 def check_end(data: bytes, end: int, type_name: str) -> None:
     """Raise DecodeError unless the message that ends at ``end`` fills ``data`` up to padding."""
     surplus = len(data) - end
     if surplus < 0:
         raise truncated(type_name, end, len(data))
     if surplus > MAX_PADDING:
-        detail = f"{surplus} bytes follow the message"
-        raise DecodeError(DecodeReason.TRAILING, type_name, detail)
-
-
-def read_string(data: bytes, offset: int, type_name: str) -> tuple[str, int]:
-    """Return the little-endian string at ``offset`` (any alignment) and the place after it."""
-    offset += -offset & 3
-    try:
-        (length,) = _U32.unpack_from(data, offset)
-    except error:
-        raise truncated(type_name, offset + 4, len(data)) from None
-    start = offset + 4
-    return string_body(data, start, length, type_name), start + length
+        raise trailing(type_name, surplus)
 
 
 def string_body(data: bytes, start: int, length: int, type_name: str) -> str:
@@ -120,11 +127,11 @@ def string_body(data: bytes, start: int, length: int, type_name: str) -> str:
     if length == 0:
         return ""
     if data.find(0, start, end) != end - 1:
-        raise DecodeError(DecodeReason.STRING, type_name, "a string does not end at its first NUL")
+        raise no_string(type_name)
     try:
         return str(data[start : end - 1], "utf-8")
     except UnicodeDecodeError:
-        raise DecodeError(DecodeReason.STRING, type_name, "a string is not UTF-8") from None
+        raise no_string(type_name) from None
 
 
 def string_bytes(text: str) -> bytes:
@@ -137,5 +144,5 @@ def string_bytes(text: str) -> bytes:
 def read_bool(value: int, type_name: str) -> bool:
     """Return the boolean of one byte; DecodeError unless it is 0 or 1."""
     if value > 1:
-        raise DecodeError(DecodeReason.BOOLEAN, type_name, f"{value} is no boolean")
+        raise no_boolean(type_name, value)
     return value == 1

@@ -18,7 +18,7 @@ from safety_island.messages.inputs import (
 )
 from safety_island.messages.status import decode_status
 from safety_island.messages.status_fields import Status
-from safety_island.messages.trajectory import view_trajectory
+from safety_island.messages.trajectory import decode_trajectory
 from safety_island.monitor.fields import Jerk, Measured, row, shortened
 from safety_island.monitor.hub import Hub
 from safety_island.monitor.rates import Rate
@@ -94,7 +94,7 @@ class Feed:
     def _take_path(self, kind: str) -> Callable[[float, bytes], None]:
         def take(now: float, data: bytes) -> None:
             self._hub.publish(
-                kind, {"t": round(now, 3)} | path_values(view_trajectory(data).points)
+                kind, {"t": round(now, 3)} | path_values(decode_trajectory(data).points)
             )
 
         return take

@@ -7,7 +7,7 @@ import math
 from collections.abc import Sequence
 
 from safety_island.dds import topics
-from safety_island.gate.writers import WINDOW_S, Writers
+from safety_island.input_gate.writers import WINDOW_S, Writers
 from safety_island.kernel.records import Records
 from safety_island.life_cycle.life_cycle import IslandWatch
 from safety_island.life_cycle.reason import Reason

@@ -16,13 +16,13 @@ from struct import Struct
 from typing import Any
 
 from safety_island.dds.sample import Sample
-from safety_island.gate.clock_gap import clock_gap_s
-from safety_island.gate.latched import LatchedGate
-from safety_island.gate.params import GateParams
-from safety_island.gate.rate import RateMeter
-from safety_island.gate.reason import UNUSABLE, SampleReason
-from safety_island.gate.stamps import StampGate
-from safety_island.gate.writers import Writers
+from safety_island.input_gate.clock_gap import clock_gap_s
+from safety_island.input_gate.latched import LatchedGate
+from safety_island.input_gate.params import GateParams
+from safety_island.input_gate.rate import RateMeter
+from safety_island.input_gate.reason import UNUSABLE, SampleReason
+from safety_island.input_gate.stamps import StampGate
+from safety_island.input_gate.writers import Writers
 from safety_island.messages.errors import DecodeError
 from safety_island.messages.status import INPUT_RECORD, NO_VALUE
 from safety_island.messages.wire import Time

@@ -8,13 +8,13 @@ from functools import partial
 from typing import Any
 
 from safety_island.dds.sample import Sample
-from safety_island.gate.content import ContentGate
-from safety_island.gate.latched import LatchedGate
-from safety_island.gate.newest import in_order, overtaken
-from safety_island.gate.params import GateParams
-from safety_island.gate.reason import SampleReason
-from safety_island.gate.sender_clock import SenderClock
-from safety_island.gate.stamps import StampGate
+from safety_island.input_gate.content import ContentGate
+from safety_island.input_gate.latched import LatchedGate
+from safety_island.input_gate.newest import in_order, overtaken
+from safety_island.input_gate.params import GateParams
+from safety_island.input_gate.reason import SampleReason
+from safety_island.input_gate.sender_clock import SenderClock
+from safety_island.input_gate.stamps import StampGate
 from safety_island.node.follower import InputFollower
 from safety_island.node.input import Input
 from safety_island.node.inputs import InputSpec

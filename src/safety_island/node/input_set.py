@@ -8,9 +8,9 @@ from operator import gt
 from typing import NamedTuple
 
 from safety_island.control.release import RELEASES
-from safety_island.gate.params import GateParams
-from safety_island.gate.sender_clock import SenderClock
-from safety_island.gate.writers import WINDOW_S
+from safety_island.input_gate.params import GateParams
+from safety_island.input_gate.sender_clock import SenderClock
+from safety_island.input_gate.writers import WINDOW_S
 from safety_island.life_cycle.reason import Reason
 from safety_island.messages.inputs import Odometry, OperationMode, Steering
 from safety_island.node.follower import InputFollower

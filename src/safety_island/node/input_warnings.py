@@ -6,10 +6,10 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from safety_island.gate.params import GateParams
-from safety_island.gate.sender_clock import SenderClock
-from safety_island.gate.warning import EXPLANATIONS, InputWarning
-from safety_island.gate.warnings import warnings
+from safety_island.input_gate.params import GateParams
+from safety_island.input_gate.sender_clock import SenderClock
+from safety_island.input_gate.warning import EXPLANATIONS, InputWarning
+from safety_island.input_gate.warnings import warnings
 from safety_island.node.input import Input
 from safety_island.platform.interfaces import Clock, Logger
 

@@ -11,10 +11,10 @@ from typing import Any, NamedTuple
 from safety_island.control.status import Mode, Refusal
 from safety_island.dds import topics
 from safety_island.dds.topics import TopicEntry
-from safety_island.gate.content import ContentGate
-from safety_island.gate.params import GateParams
-from safety_island.gate.reason import SampleReason
-from safety_island.gate.stamps import StampGate
+from safety_island.input_gate.content import ContentGate
+from safety_island.input_gate.params import GateParams
+from safety_island.input_gate.reason import SampleReason
+from safety_island.input_gate.stamps import StampGate
 from safety_island.messages import inputs as codec
 from safety_island.messages.trajectory import Trajectory, decode_trajectory
 from safety_island.node.follower import InputFollower

@@ -6,8 +6,8 @@ from __future__ import annotations
 from typing import Protocol
 
 from safety_island.dds.topics import TopicEntry
+from safety_island.kernel.cdr import NANOSECONDS
 from safety_island.messages.outputs import encode_float64_stamped
-from safety_island.messages.wire import NANOSECONDS
 from safety_island.node.outgoing import OutgoingControl
 from safety_island.node.transport import Publisher
 from safety_island.platform.interfaces import Logger

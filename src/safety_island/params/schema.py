@@ -16,9 +16,9 @@ from safety_island.control.params import (
     VehicleParams,
     key_of,
 )
-from safety_island.gate.params import GateParams
 from safety_island.guard.params import GuardParams
 from safety_island.guard.records import MAX_SPEED_POINTS
+from safety_island.input_gate.params import GateParams
 from safety_island.life_cycle.params import LifeCycleParams
 
 

@@ -20,8 +20,9 @@ import numpy.typing as npt
 
 from safety_island.control.records import POINT
 from safety_island.errors import IslandError
+from safety_island.kernel.cdr import NANOSECONDS
 from safety_island.kernel.records import Records
-from safety_island.messages.wire import NANOSECONDS, Time
+from safety_island.messages.wire import Time
 from safety_island.replay import check
 from safety_island.replay.check import Table
 

@@ -3,8 +3,8 @@
 
 from __future__ import annotations
 
-from safety_island.gate.reason import EXPLANATIONS as SAMPLE_REASONS
-from safety_island.gate.reason import SampleReason
+from safety_island.input_gate.reason import EXPLANATIONS as SAMPLE_REASONS
+from safety_island.input_gate.reason import SampleReason
 from safety_island.life_cycle.reason import EXPLANATIONS, Explanation, Reason
 from safety_island.messages.status_fields import Status
 from safety_island.status.names import input_name

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 
-from safety_island.gate.warning import InputWarning
+from safety_island.input_gate.warning import InputWarning
 from safety_island.life_cycle.reason import Reason
 from safety_island.messages.status_fields import InputStatus, Status
 from safety_island.status.names import flags_of, input_name

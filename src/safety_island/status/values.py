@@ -9,8 +9,8 @@ from typing import Any
 
 from safety_island.command.mode import OutputMode
 from safety_island.control.status import ControllerLimit, LongitudinalState, Mode, MpcStatus
-from safety_island.gate.reason import SampleReason
-from safety_island.gate.warning import InputWarning
+from safety_island.input_gate.reason import SampleReason
+from safety_island.input_gate.warning import InputWarning
 from safety_island.life_cycle.reason import Reason
 from safety_island.life_cycle.state import State
 from safety_island.messages.arm import ArmResult

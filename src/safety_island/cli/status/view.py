@@ -9,8 +9,8 @@ from rich.table import Table
 from rich.text import Text
 
 from safety_island.cli.status import text
-from safety_island.gate.reason import SampleReason
-from safety_island.gate.warning import InputWarning
+from safety_island.input_gate.reason import SampleReason
+from safety_island.input_gate.warning import InputWarning
 from safety_island.life_cycle.state import State
 from safety_island.messages.status_fields import InputStatus, Status
 from safety_island.status.names import flags_of, input_name, name_of

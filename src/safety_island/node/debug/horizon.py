@@ -17,8 +17,8 @@ from safety_island.control.geometry import clip, normalize_angle
 from safety_island.control.reference_shape import yaw_at
 from safety_island.control.release import RELEASES
 from safety_island.control.status import VehicleModel
+from safety_island.kernel.cdr import NANOSECONDS
 from safety_island.messages.points import POINT, Points
-from safety_island.messages.wire import NANOSECONDS
 from safety_island.node.debug.follower import ObservedFollower
 
 Column = npt.NDArray[np.float64]

@@ -8,6 +8,7 @@ from typing import Any
 
 from safety_island.control.limits import MAX_POINTS
 from safety_island.control.records import POINT
+from safety_island.input_gate.clock.records import MAX_INPUTS, STAMPS
 from safety_island.kernel.library import PREFIX
 from safety_island.targets.aot.ir import NATIVE
 from safety_island.targets.errors import BuildError
@@ -22,7 +23,7 @@ _SCALARS: dict[Any, str] = {float: "double", int: "i64"}
 
 def record_count(argument: Any) -> int:
     """Return how many records an argument holds at least, as far as a kernel may reach."""
-    return MAX_POINTS if argument == POINT else 1
+    return MAX_INPUTS if argument == STAMPS else MAX_POINTS if argument == POINT else 1
 
 
 def check_signature(function: Any, arguments: Sequence[Any]) -> None:

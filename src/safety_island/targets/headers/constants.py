@@ -12,19 +12,25 @@ from safety_island.control import limits, status
 from safety_island.control.longitudinal_state import LIST_CAPACITY
 from safety_island.guard import limit
 from safety_island.guard.records import MAX_SPEED_POINTS
+from safety_island.input_gate.clock.records import MAX_INPUTS
+from safety_island.kernel import cdr
 from safety_island.life_cycle import limits as life_cycle_limits
 from safety_island.life_cycle import params, reason, state
 
 _MACRO = "SAFETY_ISLAND_"
 _SIZES = (limits, life_cycle_limits)
-_ENUMERATIONS = (status, state, reason, params, limit, encoding)
+_ENUMERATIONS = (status, state, reason, params, limit, encoding, cdr)
 
 
 def sizes() -> Iterator[str]:
     """Yield a line for each bound of an array."""
     known = {name: value for module in _SIZES for name, value in vars(module).items()}
     found = {name: value for name, value in known.items() if name.startswith("MAX_")}
-    own = {"LIST_CAPACITY": LIST_CAPACITY, "MAX_SPEED_POINTS": MAX_SPEED_POINTS}
+    own = {
+        "LIST_CAPACITY": LIST_CAPACITY,
+        "MAX_SPEED_POINTS": MAX_SPEED_POINTS,
+        "MAX_INPUTS": MAX_INPUTS,
+    }
     for name, value in (found | own).items():
         yield f"#define {_MACRO}{name} {value}"
 

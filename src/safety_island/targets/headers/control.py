@@ -18,7 +18,7 @@ from safety_island.targets.headers.records import CRecords
 
 NAME = "safety_island_control.h"
 
-_ROOM = {"points": "MAX_POINTS", "work": "LIST_CAPACITY"}
+_ROOM = {"points": "MAX_POINTS", "work": "LIST_CAPACITY", "stamps": "MAX_INPUTS"}
 """How many records an argument of that name points to, where it is not one."""
 _SCALARS: dict[Any, str] = {float: "double", int: "int64_t"}
 
