@@ -26,11 +26,12 @@ They are the same for every command.
 LINES = """\
 ## JSON lines
 
-`island run`, `main-compute`, `bridge`, `status` and `monitor` print one JSON object a line on standard
-output with `--json`; what is for a person goes to standard error. Each line has `event`. The first line
-that is written has `version` as well, the version of the island. A key has one type and one meaning
-within a command. A number that has no finite value is null. Numbers are in m, rad, s and made of
-these unless the key says otherwise. Keys may be added in a later version; take what you know.
+`island run`, `main-compute`, `bridge`, `status` and `monitor` print one JSON object a line on
+standard output with `--json`; what is for a person goes to standard error. Each line has `event`.
+The first line that is written has `version` as well, the version of the island. A key has one type
+and one meaning within a command. A number that has no finite value is null. Numbers are in m, rad,
+s and made of these unless the key says otherwise. Keys may be added in a later version; take what
+you know.
 
 A line is dropped rather than waited for when its reader is too slow, except in virtual time.
 """

@@ -13,7 +13,7 @@ from safety_island.messages.points import Points
 from safety_island.monitor.fields import rounded
 from safety_island.params import IslandParameters
 
-MOST_POINTS = 400
+MOST_POINTS = 200
 """Of a path on its way to the page."""
 CENTIMETRES = 2
 """Decimals of a position [m]."""

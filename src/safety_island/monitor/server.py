@@ -26,6 +26,8 @@ from safety_island.monitor.hub import Client, Hub
 DATA_PATH = "/data"
 PORTS_TRIED = 50
 MOST_CLIENTS = 32
+SEND_EVERY_S = 0.03
+"""At least so long [s] between two messages to a page: what came meanwhile goes together."""
 LONGEST_MESSAGE = 1024
 """From a page [byte]."""
 GREETING_LIMIT_S = 5.0
@@ -166,6 +168,7 @@ async def _send(connection: ServerConnection, client: Client, messages: list[str
         while True:
             await client.wakeup.wait()
             await connection.send(client.take())
+            await asyncio.sleep(SEND_EVERY_S)
 
 
 def _read(message: str | bytes) -> dict[str, Any]:

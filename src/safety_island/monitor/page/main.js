@@ -10,12 +10,15 @@ import { csv, download, png } from "./save.js";
 import { Store } from "./store.js";
 
 const $ = (id) => document.getElementById(id);
-const PLOT_EVERY_MS = 90;
+// A plot moves by so many pixels at a time, but in steps of at least and at most so long.
+const PLOT_STEP_PX = 1.4, PLOT_MS = [90, 300];
+const FRAME_MS = 30; // what is drawn costs little, what a browser does with it costs more
+const READ_EVERY_MS = 200; // numbers that are to be read
 const TOAST_MS = 6000;
 
 const page = { store: null, view: null, plots: null, marks: [], facts: null, isLive: false };
 const axis = { seconds: 60, end: null, offset: null }; // end: null while it is live
-let drawnAt = 0, drawnSpan = "";
+let drawnAt = 0, drawnSpan = "", viewedAt = 0, readAt = 0;
 
 const link = new Link(take, connection);
 const panels = new Panels((key) => link.press(key), Boolean(link.token));
@@ -35,7 +38,6 @@ const takers = {
   rows({ rows }) {
     for (const row of rows) page.store.add(row);
     tick(rows.at(-1)?.[0]);
-    now();
   },
   mark(mark) {
     page.marks.push(mark);
@@ -136,13 +138,21 @@ function show(end) {
 
 function frame(at) {
   requestAnimationFrame(frame);
-  if (!page.view) return;
+  if (!page.view || document.hidden || at - viewedAt < FRAME_MS) return;
+  viewedAt = at;
   if (axis.offset !== null) page.view.expire(liveEnd());
   page.view.draw();
-  if (at - drawnAt < PLOT_EVERY_MS || document.hidden) return;
+  if (at - readAt >= READ_EVERY_MS) {
+    readAt = at;
+    now();
+    page.plots.showValues();
+  }
+  if (page.plots.drawNext()) return; // one plot a frame: no frame takes long
+  const pixel = (1000 * axis.seconds) / page.plots.width;
+  if (at - drawnAt < Math.min(PLOT_MS[1], Math.max(PLOT_MS[0], PLOT_STEP_PX * pixel))) return;
   const end = axis.end ?? (page.isLive ? liveEnd() : page.store.newest);
-  const span = `${axis.end === null ? end.toFixed(2) : end}/${axis.seconds}/${page.store.count}/${page.marks.length}`;
-  if (!Number.isFinite(end) || (axis.end !== null && span === drawnSpan)) return;
+  const span = `${end}/${axis.seconds}/${page.store.count}/${page.marks.length}`;
+  if (!Number.isFinite(end) || span === drawnSpan) return;
   drawnAt = at;
   drawnSpan = span;
   page.plots.draw(end - axis.seconds, end);

@@ -3,7 +3,7 @@
 
 import { colour } from "./look.js";
 
-const TRAIL = 6000; // places that are kept
+const TRAIL = 4000, TRAIL_M = 0.5; // places that are kept, and how far apart
 const SCALES = [3, 120]; // pixels a metre
 const PATH_S = 2, PREDICTED_S = 1; // ages at which they are old
 const FOLLOW_AT = 0.42; // the vehicle's place when followed, from the left
@@ -75,7 +75,7 @@ export class TopView {
 
   setPose(pose) {
     const last = this.trail.at(-1);
-    if (!last || Math.hypot(pose.x - last.x, pose.y - last.y) > 0.1) {
+    if (!last || Math.hypot(pose.x - last.x, pose.y - last.y) > TRAIL_M) {
       this.trail.push({ t: pose.t, x: pose.x, y: pose.y });
       if (this.trail.length > TRAIL) this.trail.splice(0, TRAIL / 4);
     }
@@ -103,7 +103,7 @@ export class TopView {
     ctx.translate(width / 2, height / 2);
     ctx.scale(this.scale, -this.scale);
     ctx.translate(-this.centre.x, -this.centre.y);
-    ctx.lineJoin = ctx.lineCap = "round";
+    ctx.lineCap = "round";
     this.drawPath();
     this.drawTrail();
     this.drawStop();
@@ -163,6 +163,7 @@ export class TopView {
     const { ctx } = this;
     ctx.globalAlpha = this.pathIsOld ? 0.35 : 1;
     this.trace(this.path);
+    ctx.lineJoin = "bevel"; // round ones cost most of the time of a frame
     ctx.strokeStyle = colour("road");
     ctx.lineWidth = this.width + 1.2;
     ctx.stroke();
@@ -185,10 +186,14 @@ export class TopView {
   }
 
   drawTrail() {
-    const { ctx, trail } = this;
+    const { ctx } = this;
+    const reach = (this.canvas.clientWidth + this.canvas.clientHeight) / 2 / this.scale;
+    const near = ({ x, y }) => Math.abs(x - this.centre.x) + Math.abs(y - this.centre.y) < 2 * reach;
+    const trail = [...this.trail.filter(near), this.pose].filter(Boolean);
     if (trail.length < 2) return;
     ctx.strokeStyle = colour("purple");
     ctx.lineWidth = 2.5 / this.scale;
+    ctx.lineJoin = "bevel";
     ctx.globalAlpha = 0.85;
     ctx.beginPath();
     trail.forEach(({ x, y }, i) => {

@@ -74,6 +74,7 @@ export class Plots {
     this.marks = marks;
     this.onCursor = onCursor;
     this.cursorAt = null;
+    this.waiting = [];
     this.place = place;
     this.observer = new ResizeObserver(() => this.resize());
     this.build();
@@ -153,19 +154,34 @@ export class Plots {
     this.showValues();
   }
 
-  // Draw the time from..to [s].
+  get width() {
+    return this.charts[0].chart.width;
+  }
+
+  // Draw the time from..to [s]: one plot now, the others as `drawNext` is called.
   draw(from, to) {
-    for (const { plot, chart } of this.charts) {
-      const names = plot.series.map((series) => series.field);
-      const gap = Math.max(1, 4 * this.facts.period);
-      const data = this.store.span(names, from, to, 2 * chart.width, gap);
-      plot.series.forEach((series, k) => scaled(data[k + 1], this.scale(series)));
-      chart.batch(() => {
-        chart.setData(data, false);
-        chart.setScale("x", { min: from, max: to });
-      });
-    }
-    this.showValues();
+    this.span = [from, to];
+    this.waiting = [...this.charts];
+    this.drawNext();
+  }
+
+  // Draw the next plot that waits; whether there was one.
+  drawNext() {
+    const next = this.waiting.shift();
+    if (next) this.drawOne(next);
+    return Boolean(next);
+  }
+
+  drawOne({ plot, chart }) {
+    const [from, to] = this.span;
+    const names = plot.series.map((series) => series.field);
+    const gap = Math.max(1, 4 * this.facts.period);
+    const data = this.store.span(names, from, to, chart.width, gap);
+    plot.series.forEach((series, k) => scaled(data[k + 1], this.scale(series)));
+    chart.batch(() => {
+      chart.setData(data, false);
+      chart.setScale("x", { min: from, max: to });
+    });
   }
 
   scale(series) {
