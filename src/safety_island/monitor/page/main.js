@@ -136,7 +136,7 @@ function show(end) {
   connection(page.isLive ? "live" : "lost", page.isLive ? "live" : $("link").textContent);
 }
 
-// A frame that draws nothing costs a browser a third of one that does: none is asked for.
+// Asked for some 30 times a second: more often would show nothing more.
 function frame(at) {
   setTimeout(() => requestAnimationFrame(frame), REST_MS);
   if (!page.view || document.hidden) return;
