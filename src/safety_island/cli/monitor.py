@@ -6,6 +6,7 @@ from __future__ import annotations
 import argparse
 import os
 import secrets
+from ipaddress import ip_address
 from typing import TYPE_CHECKING, Self
 
 from safety_island.cli import options
@@ -50,6 +51,7 @@ browser. Nothing is fetched from the network. The address is printed; a port in 
     )
     parser.add_argument(
         "--bind",
+        type=address,
         default="127.0.0.1",
         metavar="ADDRESS",
         help="address to serve on; other than loopback, the page asks for the token of the printed"
@@ -67,6 +69,16 @@ browser. Nothing is fetched from the network. The address is printed; a port in 
     )
     options.add_duration(parser, 0.0)
     options.add_json(parser, "the address, and each button that is pressed,")
+
+
+def address(text: str) -> str:
+    """Read an IP address to bind to."""
+    try:
+        return str(ip_address(text))
+    except ValueError:
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is not an IP address, for example 127.0.0.1 or 0.0.0.0"
+        ) from None
 
 
 def port(text: str) -> int:
