@@ -26,6 +26,12 @@ def test_a_port_that_is_none(port: str, capsys: pytest.CaptureFixture[str]) -> N
     assert f"'{port}' is not a port: a whole number, 1 to 65535" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("address", ["", "localhost", "1.2.3", "a\u2028b", "eth0"])
+def test_an_address_that_is_none(address: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["monitor", f"--bind={address}"]) == 2
+    assert "is not an IP address, for example 127.0.0.1" in capsys.readouterr().err
+
+
 @pytest.mark.live
 def test_a_port_in_use_is_said_and_the_next_one_serves(domain_id: int) -> None:
     with socket.socket() as other:

@@ -217,6 +217,20 @@ def test_faults_on_the_topics(neighbour: Neighbour) -> None:
         wait_for(is_nan)
         console.act.append(lambda main_compute: setattr(main_compute, "nan_odometry", False))
         wait_for(lambda: not is_nan())
+        trajectory = neighbour.inputs["trajectory"]
+
+        def left_of_the_vehicle() -> float:
+            """How far the trajectory is beside the vehicle, which stands with yaw 0."""
+            path, place = trajectory.take_newest(), odometry.take_newest()
+            if path is None or place is None:
+                return math.nan
+            y = float(decode_trajectory(path.data).points["y"][0])
+            return y - decode_odometry(place.data).y
+
+        console.act.append(lambda main_compute: setattr(main_compute, "trajectory_offset", 6.0))
+        wait_for(lambda: left_of_the_vehicle() > 5.0)
+        console.act.append(lambda main_compute: setattr(main_compute, "trajectory_offset", 0.0))
+        wait_for(lambda: left_of_the_vehicle() < 1.0)
         console.act.append(lambda main_compute: main_compute.frozen.add("odometry"))
         wait_for(lambda: not console.act)
         odometry.take_newest()

@@ -12,13 +12,13 @@ import { Store } from "./store.js";
 const $ = (id) => document.getElementById(id);
 // A plot moves by so many pixels at a time, but in steps of at least and at most so long.
 const PLOT_STEP_PX = 1.4, PLOT_MS = [90, 300];
-const FRAME_MS = 30; // what is drawn costs little, what a browser does with it costs more
+const REST_MS = 26; // between two frames: some 30 a second
 const READ_EVERY_MS = 200; // numbers that are to be read
 const TOAST_MS = 6000;
 
 const page = { store: null, view: null, plots: null, marks: [], facts: null, isLive: false };
 const axis = { seconds: 60, end: null, offset: null }; // end: null while it is live
-let drawnAt = 0, drawnSpan = "", viewedAt = 0, readAt = 0;
+let drawnAt = 0, drawnSpan = "", readAt = 0;
 
 const link = new Link(take, connection);
 const panels = new Panels((key) => link.press(key), Boolean(link.token));
@@ -136,10 +136,10 @@ function show(end) {
   connection(page.isLive ? "live" : "lost", page.isLive ? "live" : $("link").textContent);
 }
 
+// Asked for some 30 times a second: more often would show nothing more.
 function frame(at) {
-  requestAnimationFrame(frame);
-  if (!page.view || document.hidden || at - viewedAt < FRAME_MS) return;
-  viewedAt = at;
+  setTimeout(() => requestAnimationFrame(frame), REST_MS);
+  if (!page.view || document.hidden) return;
   if (axis.offset !== null) page.view.expire(liveEnd());
   page.view.draw();
   if (at - readAt >= READ_EVERY_MS) {

@@ -118,13 +118,15 @@ export class Plots {
       axis({ size: 24, space: 70, values: times }),
       axis({ size: 46, space: 26, ...(plot.log && { splits: () => DECADES, filter: (u, splits) => splits, values: (u, ticks) => ticks.map(String) }) }),
     ];
-    if (plot.right) {
+    if (!plot.right) {
+      axes.push(axis({ side: 1, size: RIGHT, values: (u, ticks) => ticks.map(() => ""), grid: { show: false } }));
+    } else {
       scales.right = { range: (u, low, high) => range(low, high, { symmetric: plot.symmetricRight }) };
       axes.push(axis({ scale: "right", side: 1, size: RIGHT, space: 26, grid: { show: false } }));
     }
     return {
       width: Math.max(box.clientWidth, 100), height: Math.max(box.clientHeight, 60),
-      padding: [6, plot.right ? 0 : RIGHT, 0, 0], legend: { show: false }, scales, axes,
+      padding: [6, 0, 0, 0], legend: { show: false }, scales, axes,
       cursor: { sync: { key: "time", setSeries: false }, drag: { x: false, y: false }, points: { size: 6 }, y: false },
       series: [{}, ...plot.series.map((s) => ({
         scale: s.right ? "right" : "y", stroke: () => colour(s.colour), width: s.dash ? 1.6 : 2,
