@@ -92,7 +92,7 @@ def test_row_51_an_exception_over_a_sample_refuses_that_sample(key: str, name: s
 ASIDE: dict[str, Callable[[Scene], tuple[Any, str]]] = {
     "warnings": lambda scene: (scene.node.inputs, "warn"),
     "rates": lambda scene: (scene.input("odometry").rate, "look"),
-    "status": lambda scene: (scene.node.status, "_encode"),
+    "status": lambda scene: (scene.node.status, "_tell"),
 }
 
 
