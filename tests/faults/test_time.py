@@ -64,12 +64,6 @@ def test_row_32_row_33_a_step_of_the_islands_wall_clock(period_s: float, step_ns
     assert {warnings[key] for key in AGED} == {InputWarning.CLOCK}
 
 
-def stamps(command: Control) -> list[int]:
-    """The three stamps of a command [ns]: of the whole and of both parts."""
-    found = (command.stamp, command.longitudinal_stamp, command.lateral_stamp)
-    return [stamp.nanoseconds for stamp in found if stamp is not None]
-
-
 @BOTH
 @pytest.mark.parametrize("step_ns", [-HOUR_NS, HOUR_NS], ids=["row_32_back", "row_33_forward"])
 def test_row_32_row_33_a_step_of_the_main_computes_wall_clock(
