@@ -5,12 +5,22 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from safety_island.control.follower import TrajectoryFollower
+from safety_island.control.params import Parameters
+from safety_island.control.qp_alone import condense_problem
+from safety_island.control.qp_records import QP
 from safety_island.kernel.records import Records
 
 
 class ObservedFollower(TrajectoryFollower):
     """The same controllers; an observer reads their records and writes none."""
+
+    def __init__(self, parameters: Parameters) -> None:
+        super().__init__(parameters)
+        condense_problem.prepare()
+        self._whole: Records = np.zeros(1, QP)
 
     @property
     def params(self) -> Any:
@@ -34,5 +44,6 @@ class ObservedFollower(TrajectoryFollower):
 
     @property
     def problem(self) -> Any:
-        """QP: the last quadratic programme."""
-        return self._qp[0]
+        """QP: the last quadratic programme, whole, though the solver may have needed no matrix."""
+        condense_problem.call(self._params, self._lateral.copy(), self._whole)
+        return self._whole[0]
