@@ -10,9 +10,10 @@ Where inputs may overflow they are read as ``float(...)``, which as plain Python
 """
 
 import math
-from math import atan, tan
 
 from safety_island.guard.limit import Limit, Verdict
+from safety_island.kernel.math.inverse import atan
+from safety_island.kernel.math.trigonometric import tan
 
 FUTURE_TOLERANCE_S = 1e-3
 """A stamp may lie that far in the future: it comes from the same clock, by way of rounding."""
