@@ -304,7 +304,7 @@ def test_the_demo_drives_where_a_wheel_is_installed(installed: Installation) -> 
     assert len(judged) > 3, result.stderr
     # Ticks are missed when tests keep every core busy; all else is the drive's own doing.
     failed = [line for line in judged if not line.startswith("ok") and "missed" not in line]
-    assert all(line.startswith("first Control") for line in failed), result.stdout
+    assert all(line.startswith(("first Control", "the machine was busy")) for line in failed)
     assert "Traceback" not in result.stderr
 
 
