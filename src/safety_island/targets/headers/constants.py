@@ -39,7 +39,8 @@ def enumerations() -> Iterator[str]:
     """Yield the lines of each enumeration: what a status or a field of a record means."""
     for module in _ENUMERATIONS:
         for kind in vars(module).values():
-            if getattr(kind, "__module__", "") == module.__name__ and issubclass(kind, Enum):
+            is_own = inspect.isclass(kind) and kind.__module__ == module.__name__
+            if is_own and issubclass(kind, Enum):
                 yield from _enumeration(kind)
 
 
