@@ -42,11 +42,11 @@ _OURS = ("NUMBA_", "SAFETY_ISLAND_KERNELS", "SAFETY_ISLAND_JIT")
 
 
 def entries(on_demand: bool = False) -> list[kernel.Entry]:
-    """Return the kernels that a library holds.
+    """Return the kernels that a library holds, in an order that no import decides.
 
     ``on_demand``: also those that only the solver OSQP needs.
     """
-    return all_entries(on_demand)
+    return sorted(all_entries(on_demand), key=lambda entry: entry.name)
 
 
 def kernel_irs(report: Report, on_demand: bool = False) -> dict[str, str]:
