@@ -217,7 +217,7 @@ class _Recipe:
         domain, tag = self._domains[1], given.domain_tag
         debug = self.has_page and name == ISLAND
         settings = (domain, given.params, given.period, given.target, tag, name)
-        return island_child(*settings, debug_topics=debug)
+        return island_child(*settings)
 
     def page(self) -> Child:
         """The monitor that serves the page."""

@@ -20,15 +20,11 @@ def island_child(
     target: str = "posix",
     tag: str | None = None,
     name: str = ISLAND,
-    *,
-    debug_topics: bool = False,
 ) -> Child:
-    """Return the safety island, not started; its debug topics are for the page."""
+    """Return the safety island, not started."""
     run = ["run", "--domain", str(domain), "--target", target, "--params", *params]
     if period_s is not None:
         run += ["--period", repr(period_s)]
-    if debug_topics:
-        run.append("--debug-topics")
     return Child(name, [*run, *_tagged(tag), *LOOPBACK, "--json"])
 
 
