@@ -212,10 +212,9 @@ class _Recipe:
         self.has_page = not (arguments.no_page or arguments.json)
 
     def island(self, name: str = ISLAND) -> Child:
-        """The safety island, or another one of that name; the page shows the path it predicts."""
+        """The safety island, or another one of that name."""
         given = self._arguments
         domain, tag = self._domains[1], given.domain_tag
-        debug = self.has_page and name == ISLAND
         settings = (domain, given.params, given.period, given.target, tag, name)
         return island_child(*settings)
 
